@@ -22,6 +22,7 @@ namespace cistula {
 struct ColorPicture {
     uint32_t width = 0, height = 0;
     std::vector<glm::vec3> texels;
+    std::vector<float> alpha = {};  // of texels that are not premultiplied; empty: all are opaque
 };
 
 /// A fraction, as EXR headers give frame rates.

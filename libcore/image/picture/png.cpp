@@ -35,11 +35,14 @@ std::string encode(uint32_t width, uint32_t height, uint32_t format, const std::
 }  // namespace
 
 std::string encode_png(const ColorPicture& linear) {
+    const bool opaque = linear.alpha.empty();
     std::vector<uint8_t> pixels;
-    pixels.reserve(3 * linear.texels.size());
-    for (const glm::vec3& texel : linear.texels)
-        for (int c = 0; c < 3; ++c) pixels.push_back(srgb8_from_linear(texel[c]));
-    return encode(linear.width, linear.height, PNG_FORMAT_RGB, pixels, {});
+    pixels.reserve(4 * linear.texels.size());
+    for (size_t i = 0; i < linear.texels.size(); ++i) {
+        for (int c = 0; c < 3; ++c) pixels.push_back(srgb8_from_linear(linear.texels[i][c]));
+        if (!opaque) pixels.push_back(static_cast<uint8_t>(255 * linear.alpha[i] + 0.5f));
+    }
+    return encode(linear.width, linear.height, opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA, pixels, {});
 }
 
 std::string encode_indexed_png(uint32_t width, uint32_t height, const std::vector<uint8_t>& pixels,

@@ -9,8 +9,8 @@
 
 namespace cistula {
 
-/// An 8-bit sRGB PNG of a linear RGB picture, clamped to [0, 1]. Throws std::runtime_error with libpng's reason, for
-/// instance for pictures of 4 GiB and more.
+/// An 8-bit sRGB PNG of a linear RGB picture, clamped to [0, 1], with its alpha, if it has one. Throws
+/// std::runtime_error with libpng's reason, for instance for pictures of 4 GiB and more.
 std::string encode_png(const ColorPicture& linear);
 
 /// An indexed PNG. `pixels`: row-major from the top left, indices into `colors`, which are 1 to 256 sRGB triples of
