@@ -19,7 +19,7 @@ configure = @cmake/configure $(1) $(2) $(CMAKE_ARGS)
 CUDA   ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help render build test test-quick test-asan test-report test-clients fuzz lint check-all bench gpu-check golden docs install uninstall package cuda-toolkit clean
+.PHONY: help render build test test-quick test-asan test-report test-clients fuzz lint check-all bench gpu-check golden docs install uninstall package wheel cuda-toolkit clean
 
 help: ## this list
 	@echo 'make TARGET [PRESET=release|release-all|debug|asan|fuzz|clang] [SETUP=no] [CMAKE_ARGS=...]'
@@ -76,10 +76,11 @@ check-all: lint ## before a release: lint, all tests, the benchmarks built, the 
 
 test-report: ## measure a small report, open it and a suite's page in headless Chromium and look for what is wrong; screenshots into out/report
 	$(call setup,packages.txt tests/report-packages.txt)
+	@python/make-venv
 	$(call configure,$(PRESET))
-	@cmake --build $(BUILD) --target render-report render-compare
+	@cmake --build $(BUILD) --target python render-compare
 	@mkdir -p out/report
-	$(BUILD)/bin/render-report scenes/benchmark.json scenes/platonic.json --quick --res 96x54 --scaling -o out/report/small.html
+	PYTHONPATH=$(BUILD)/python build/python/bin/python -m cistula report scenes/benchmark.json scenes/platonic.json --quick --res 96x54 --scaling -o out/report/small.html
 	tests/report-check out/report/small.html $(wildcard docs/report/*.html) --screenshots out/report
 	tests/check_suite_page.sh . $(BUILD) out/report
 
@@ -119,6 +120,11 @@ golden: ## record the golden images that differ and say what changed
 	$(call configure,$(PRESET))
 	@cmake --build $(BUILD) --target render-compare
 	$(BUILD)/bin/render-compare suite golden --backend embree --update
+
+wheel: ## make a wheel of the Python package, with all libraries that it needs, and an sdist, into out/wheel; CUDA=yes: with kernels
+	$(call setup,packages.txt)
+	@python/make-venv
+	@python/make-wheel
 
 docs: ## the reference of libcore/cistula and of the Renderer interface, into out/docs
 	$(call setup,docs/packages.txt)

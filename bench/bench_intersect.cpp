@@ -12,12 +12,15 @@
 #include "base/error.h"
 #include "program.h"
 #include "render/frame/frame_view.h"
-#include "testing/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::bench {
 namespace {
 
-constexpr int width = 640, height = 480, tile = 16, repetitions = 9;
+constexpr int width = 640;
+constexpr int height = 480;
+constexpr int tile = 16;
+constexpr int repetitions = 9;
 
 SceneDescription bumpy_scene() {
     SceneDescription scene;
@@ -111,7 +114,7 @@ class Theirs {
         rtcAttachGeometry(scene_, geometry);
         rtcReleaseGeometry(geometry);
         rtcCommitScene(scene_);
-        if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw Error(ExitCode::device, "Embree's own tree failed");
+        if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw Error(ErrorKind::device, "Embree's own tree failed");
     }
     ~Theirs() {
         rtcReleaseScene(scene_);
@@ -209,7 +212,8 @@ void time_embree_packets(benchmark::State& state, Rays kind) {
 
 /// Checks that equal work is compared: both find one surface.
 void check_agreement() {
-    size_t hits = 0, differing = 0;
+    size_t hits = 0;
+    size_t differing = 0;
     const std::vector<Ray<float>>& rays = setting->single.rays[primary];
     for (size_t i = 0; i < rays.size(); ++i) {
         const float ours = setting->single.closest(rays[i]).t;
@@ -222,7 +226,7 @@ void check_agreement() {
         differing += differs(t[0]);
     }
     if (hits == 0 || differing * 1000 > hits)
-        throw Error(ExitCode::failed,
+        throw Error(ErrorKind::failed,
                     fmt::format("of {} hits {} differ from Embree's; at most 1 in 1000 may", hits, differing));
 }
 

@@ -21,7 +21,9 @@
 namespace cistula::bench {
 namespace {
 
-constexpr int width = 640, height = 480, repetitions = 5;
+constexpr int width = 640;
+constexpr int height = 480;
+constexpr int repetitions = 5;
 /// A difference that 8 bits do not show.
 constexpr float visible = 0.004f;
 
@@ -44,7 +46,7 @@ struct Work {
 double povray_trace_seconds(const std::string& log) {
     const size_t line = log.find("Trace Time:");
     const size_t begin = line == log.npos ? line : log.find('(', line);
-    if (begin == log.npos) throw Error(ExitCode::failed, "POV-Ray's output names no trace time");
+    if (begin == log.npos) throw Error(ErrorKind::failed, "POV-Ray's output names no trace time");
     return std::stod(log.substr(begin + 1));
 }
 
@@ -63,7 +65,7 @@ nlohmann::json run_cistula(const Work& work, int threads) {
     const nlohmann::json stats = nlohmann::json::parse(std::ifstream(work.stats));
     for (const auto& entry : stats.at("benchmarks"))
         if (entry.contains("render_ms")) return entry;
-    throw Error(ExitCode::failed, work.stats.string() + ": names no frame");
+    throw Error(ErrorKind::failed, work.stats.string() + ": names no frame");
 }
 
 void time_povray(benchmark::State& state, const Work& work, int threads) {
@@ -82,7 +84,7 @@ void time_cistula(benchmark::State& state, const Work& work, int threads) {
 const LayeredPicture::Channel& channel(const LayeredPicture& picture, std::string_view name) {
     for (const LayeredPicture::Channel& c : picture.channels)
         if (c.name == name) return c;
-    throw Error(ExitCode::failed, "a picture has no channel " + std::string(name));
+    throw Error(ErrorKind::failed, "a picture has no channel " + std::string(name));
 }
 
 /// Per pixel the largest difference of its channels; POV-Ray writes half floats, which at 1 are 0.0005 apart.
@@ -90,15 +92,17 @@ void compare_images(benchmark::State& state, const Work& work, int threads) {
     for (auto _ : state) {
         run_povray(work, threads);
         run_cistula(work, threads);
-        const LayeredPicture theirs = read_exr(work.povray_image.string()), ours = read_exr(work.image.string());
+        const LayeredPicture theirs = read_exr(work.povray_image.string());
+        const LayeredPicture ours = read_exr(work.image.string());
         if (theirs.width != width || theirs.height != height || ours.width != width || ours.height != height)
-            throw Error(ExitCode::failed, "the pictures to compare differ in size");
+            throw Error(ErrorKind::failed, "the pictures to compare differ in size");
         double sum = 0, worst = 0, sum_ours = 0, sum_theirs = 0;
         int agree = 0;
         for (size_t i = 0; i < size_t(width * height); ++i) {
             float difference = 0;
             for (const char* name : {"R", "G", "B"}) {
-                const float a = channel(ours, name).values[i], b = channel(theirs, name).values[i];
+                const float a = channel(ours, name).values[i];
+                const float b = channel(theirs, name).values[i];
                 difference = std::max(difference, std::abs(a - b));
                 sum_ours += double(a);
                 sum_theirs += double(b);

@@ -10,7 +10,10 @@
 namespace cistula::bench {
 namespace {
 
-constexpr int width = 640, height = 480, threads = 2, repetitions = 7;
+constexpr int width = 640;
+constexpr int height = 480;
+constexpr int threads = 2;
+constexpr int repetitions = 7;
 
 /// Fails where a frame cannot be trusted.
 void register_frames(const std::string& name, std::shared_ptr<Renderer> renderer, const CameraFrame& camera,
@@ -21,7 +24,7 @@ void register_frames(const std::string& name, std::shared_ptr<Renderer> renderer
             RenderProgress progress;
             renderer->render(camera, settings, film, progress);
             if (film.flags != 0)
-                throw Error(ExitCode::failed, "the frame cannot be trusted: flags " + std::to_string(film.flags));
+                throw Error(ErrorKind::failed, "the frame cannot be trusted: flags " + std::to_string(film.flags));
         }
         state.counters["rays_per_second"] =
             benchmark::Counter(double(film.rays.total()), benchmark::Counter::kIsIterationInvariantRate);

@@ -27,7 +27,7 @@ bool is_gray(const dvec3& v) {
 /// Refuses what has no equal in POV-Ray's light model, or one with other edges.
 void check(const SceneDescription& scene, const SceneSource& source) {
     const auto refuse = [&](const std::string& what) {
-        throw Error(ExitCode::usage, scene.source + ": cannot be put in POV-Ray's terms: " + what);
+        throw Error(ErrorKind::usage, scene.source + ": cannot be put in POV-Ray's terms: " + what);
     };
     for (const MaterialDescription& m : source.materials) {
         if (m.index == 1 ? m.fresnel : !m.fresnel || m.transmission < 1)
@@ -48,12 +48,16 @@ void check(const SceneDescription& scene, const SceneSource& source) {
 /// Two cells a unit of uv times repeat, placed by the first triangle's uvs (a planar object has one such map).
 std::string checker(const TextureDescription& texture, const dvec3& base, const MeshSource& mesh) {
     const auto& t = mesh.triangles[0];
-    const dvec3 p = mesh.vertices[t[0]], b = mesh.vertices[t[1]] - p, c = mesh.vertices[t[2]] - p;
+    const dvec3 p = mesh.vertices[t[0]];
+    const dvec3 b = mesh.vertices[t[1]] - p;
+    const dvec3 c = mesh.vertices[t[2]] - p;
     const glm::dvec2 scale = texture.repeat * 2.0;
     const glm::dvec2 at = mesh.uvs[t[0]] * scale;
-    const glm::dvec2 db = mesh.uvs[t[1]] * scale - at, dc = mesh.uvs[t[2]] * scale - at;
+    const glm::dvec2 db = mesh.uvs[t[1]] * scale - at;
+    const glm::dvec2 dc = mesh.uvs[t[2]] * scale - at;
     const double det = db.x * dc.y - db.y * dc.x;
-    const dvec3 along_x = (b * dc.y - c * db.y) / det, along_y = (c * db.x - b * dc.x) / det;
+    const dvec3 along_x = (b * dc.y - c * db.y) / det;
+    const dvec3 along_y = (c * db.x - b * dc.x) / det;
     const dvec3 normal = normalized(cross(b, c));
     // POV-Ray's checker has cells in depth too: the triangles go through the middle of one.
     const dvec3 corner = p - at.x * along_x - at.y * along_y - 0.5 * normal;

@@ -7,7 +7,7 @@
 #include <exception>
 #include <memory>
 
-#include "base/error.h"
+#include "apps/common/command_line.h"
 #include "base/machine.h"
 
 namespace cistula::bench {
@@ -15,7 +15,7 @@ namespace cistula::bench {
 std::string output_of(const std::string& command) {
     const auto close = [](FILE* stream) { pclose(stream); };
     std::unique_ptr<FILE, decltype(close)> pipe(popen((command + " 2>&1").c_str(), "r"), close);
-    if (!pipe) throw Error(ExitCode::failed, "cannot run " + command);
+    if (!pipe) throw Error(ErrorKind::failed, "cannot run " + command);
     std::string text;
     std::array<char, 4096> buffer;
     while (const size_t count = fread(buffer.data(), 1, buffer.size(), pipe.get())) text.append(buffer.data(), count);
@@ -23,7 +23,7 @@ std::string output_of(const std::string& command) {
     if (status == 0) return text;
     while (!text.empty() && text.back() == '\n') text.pop_back();
     const size_t line = text.rfind('\n');
-    throw Error(ExitCode::failed, command + " failed: " + (line == text.npos ? text : text.substr(line + 1)));
+    throw Error(ErrorKind::failed, command + " failed: " + (line == text.npos ? text : text.substr(line + 1)));
 }
 
 std::string quoted(const std::string& text) {
@@ -63,7 +63,7 @@ int run_program(int argc, char** argv, int repetitions, void (*register_all)(con
         benchmark::Shutdown();
     } catch (const Error& error) {
         fprintf(stderr, "%s: %s\n", argv[0], error.what());
-        return int(error.code());
+        return int(exit_code(error.kind()));
     } catch (const std::exception& error) {
         fprintf(stderr, "%s: %s\n", argv[0], error.what());
         return int(ExitCode::failed);

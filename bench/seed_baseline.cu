@@ -15,13 +15,14 @@ void check(cudaError_t result, const char* call) {
     std::string message = std::string(call) + ": " + cudaGetErrorString(result);
     if (result == cudaErrorNoDevice || result == cudaErrorInsufficientDriver)
         message += "; runs on the GPU need an NVIDIA GPU with a driver that is new enough, --cpu needs neither";
-    throw Error(ExitCode::device, message);
+    throw Error(ErrorKind::device, message);
 }
 #define SEED_CHECK(call) check(call, #call)
 
 template <int depth>
 __global__ void render(Scene scene, View view, Pixel* pixels) {
-    const int step_x = static_cast<int>(gridDim.x * blockDim.x), step_y = static_cast<int>(gridDim.y * blockDim.y);
+    const int step_x = static_cast<int>(gridDim.x * blockDim.x);
+    const int step_y = static_cast<int>(gridDim.y * blockDim.y);
     for (int y = static_cast<int>(blockIdx.y * blockDim.y + threadIdx.y); y < view.height; y += step_y)
         for (int x = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); x < view.width; x += step_x)
             pixels[static_cast<size_t>(y) * view.width + x] = pixel<depth>(scene, view, x, y);
@@ -40,7 +41,7 @@ Kernel kernel_of(int depth) {
         case 8:
             return render<8>;
     }
-    throw Error(ExitCode::usage, "no kernel was compiled for depth " + std::to_string(depth));
+    throw Error(ErrorKind::usage, "no kernel was compiled for depth " + std::to_string(depth));
 }
 
 template <class T>
@@ -89,7 +90,8 @@ DeviceDescription describe_device() {
     SEED_CHECK(cudaSetDevice(0));
     cudaDeviceProp properties;
     SEED_CHECK(cudaGetDeviceProperties(&properties, 0));
-    int driver = 0, runtime = 0;
+    int driver = 0;
+    int runtime = 0;
     SEED_CHECK(cudaDriverGetVersion(&driver));
     SEED_CHECK(cudaRuntimeGetVersion(&runtime));
     const std::string compiler = "nvcc " + std::to_string(__CUDACC_VER_MAJOR__) + "." +

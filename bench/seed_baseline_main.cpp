@@ -21,12 +21,15 @@ using Json = nlohmann::ordered_json;
 constexpr int warm_ups = 2;
 
 struct Options {
-    std::string scene = CISTULA_SOURCE_DIR "/scenes/benchmark.json", resolution = "3840x2160";
-    std::vector<int> depths = {4, 8}, grids = {16, 64, 256};
+    std::string scene = CISTULA_SOURCE_DIR "/scenes/benchmark.json";
+    std::string resolution = "3840x2160";
+    std::vector<int> depths = {4, 8};
+    std::vector<int> grids = {16, 64, 256};
     int repetitions = 0;  // 0: 20 on the GPU, 3 on the CPU
     bool cpu = false;
     std::string json;
-    int width = 0, height = 0;
+    int width = 0;
+    int height = 0;
 };
 
 void declare(CLI::App& app, Options& options) {
@@ -101,7 +104,7 @@ void time_on_device(const Options& options, const OwnedScene& scene, const View&
         DeviceRun run = render_on_device(depth, grid, warm_ups, options.repetitions, scene, view);
         records.push_back(entry(fmt::format("{}/grid:{}", name, grid), run.time));
         if (!pixels.empty() && pixels != run.pixels)
-            throw Error(ExitCode::failed, fmt::format("{}: the picture of grid {} is another one", name, grid));
+            throw Error(ErrorKind::failed, fmt::format("{}: the picture of grid {} is another one", name, grid));
         pixels = std::move(run.pixels);
     }
 }

@@ -17,7 +17,9 @@ void render_on_host(int depth, const Scene& scene, const View& view, Pixel* pixe
 
 struct DeviceDescription {
     std::string name;
-    int major = 0, minor = 0;     // compute capability
+    // compute capability
+    int major = 0;
+    int minor = 0;
     std::string driver, runtime;  // the CUDA versions of both, "13.0"
     std::string compiler;
 };

@@ -16,7 +16,7 @@ inline Vec vec(const glm::dvec3& v) {
 /// What the description of the course work does not have, or what no figure needs: it would cost the baseline time.
 inline void check(const SceneDescription& scene, const SceneSource& source) {
     const auto refuse = [&](const std::string& what) {
-        throw Error(ExitCode::usage, scene.source + ": is more than the baseline renders: " + what);
+        throw Error(ErrorKind::usage, scene.source + ": is more than the baseline renders: " + what);
     };
     for (const MaterialDescription& m : source.materials) {
         if (m.fresnel || m.absorption != glm::dvec3(0) || m.tint != glm::dvec3(1) || m.specular_color != glm::dvec3(1))
@@ -69,7 +69,7 @@ inline void append_triangles(const SceneDescription& scene, const MeshSource& me
 inline OwnedScene make_scene(const SceneDescription& scene) {
     for (const TextureDescription& texture : scene.textures)
         if (!texture.file.empty() || texture.texels)
-            throw Error(ExitCode::usage,
+            throw Error(ErrorKind::usage,
                         scene.source + ": is more than the baseline renders: textures must be checkers");
     const SceneSource source = gather_scene(scene);
     check(scene, source);

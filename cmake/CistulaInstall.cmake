@@ -1,5 +1,5 @@
 # make install: programs with manuals and completion, libraries, headers, scenes, documents, and a CMake package for
-# find_package(cistula) with the targets cistula::cistula | scene | embree | cuda | sequence | compare, the programs' and cistula_add_golden_suite.
+# find_package(cistula) with the targets cistula::cistula | scene | embree | cuda | sequence | compare | verify, the programs' and cistula_add_golden_suite.
 include(CMakePackageConfigHelpers)
 
 # Headers: the shading library, whole; of the others those that cistula.h lists, which are public, and what they include, which is
@@ -70,7 +70,7 @@ install(TARGETS cistula_contract cistula EXPORT cistulaCore)
 install(EXPORT cistulaCore NAMESPACE cistula:: DESTINATION "${CISTULA_INSTALL_CMAKE}")
 
 set(CISTULA_COMPONENTS cistula)
-foreach(_component scene embree cuda sequence compare)
+foreach(_component scene embree cuda sequence compare verify)
     if(TARGET cistula_${_component})
         install(TARGETS cistula_${_component} EXPORT cistula_${_component}
             ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")

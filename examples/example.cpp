@@ -24,7 +24,7 @@ int main(int argc, char** argv) try {
     Film film;
     RenderProgress progress;
     renderer->render(camera, settings, film, progress);
-    if (film.flags != 0) throw Error(ExitCode::failed, "the frame cannot be trusted");
+    if (film.flags != 0) throw Error(ErrorKind::failed, "the frame cannot be trusted");
 
     // Save.
     LayeredPicture picture = to_layers(film, {});
@@ -32,9 +32,6 @@ int main(int argc, char** argv) try {
         header_attributes(film, description.film, scene.hashes(), settings, scene.precision(), camera));
     write_exr(argv[2], picture);
     write_preview(argv[3], to_color(film));
-} catch (const Error& error) {
-    std::fprintf(stderr, "example: %s\n", error.what());
-    return static_cast<int>(error.code());
 } catch (const std::exception& error) {
     std::fprintf(stderr, "example: %s\n", error.what());
     return 1;

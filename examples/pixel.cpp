@@ -11,7 +11,8 @@ int main(int argc, char** argv) try {
         std::fputs("usage: pixel SCENE.json X Y\n", stderr);
         return 2;
     }
-    const int x = std::stoi(argv[2]), y = std::stoi(argv[3]);
+    const int x = std::stoi(argv[2]);
+    const int y = std::stoi(argv[3]);
     const SceneDescription description = read_scene(argv[1]);
     const Scene scene(description);
     const std::unique_ptr<Renderer> renderer = make_embree_renderer(scene);

@@ -9,12 +9,11 @@
 #include "image/picture/picture_io.h"       // write_preview, read_texture
 #include "image/picture/stored_picture.h"   // StoredFile, stored_file: pictures as they are compared
 #include "image/reader/picture_reader.h"    // StoredReader
-#include "render/frame_settings.h"          // frame_settings
 #include "render/pixel_report.h"            // pixel_text, pixel_json
 #include "render/record/film.h"             // Film
 #include "render/record/film_picture.h"     // to_layers, to_color
 #include "render/record/frame_header.h"     // header_attributes
-#include "render/renderer.h"                // FrameSettings, Renderer
+#include "render/renderer.h"                // FrameSettings, frame_settings, Renderer
 #include "render/scene.h"                   // Scene
 #include "scene/assets/assets.h"            // load_assets; MeshData: a mesh as arrays
 #include "scene/description/camera_path.h"  // camera_at
@@ -33,3 +32,6 @@
 // cistula::compare: pictures and suites
 #include "compare/metrics/compare.h"  // compare_files
 #include "compare/suite/suite_run.h"  // run_cases
+
+// cistula::verify: the renderer checks itself
+#include "verify/verify.h"  // verify::run

@@ -46,7 +46,7 @@ quotes() {
 # FILE:LINE:PATH of what looks like a file or a folder of this tree: in pages outside fenced code, in C++ and CUDA after //, in scripts after #.
 named_paths() {
     awk 'BEGIN {
-            tops = "(libcore|backend_embree|backend_cuda|apps|tests|testing|bench|docs|golden|scenes|cmake)"
+            tops = "(libcore|backend_embree|backend_cuda|apps|tests|testing|bench|docs|golden|scenes|cmake|python)"
             folders = "(cistula|scene|numerics|geometry|model|shading|lights|transport|adaptive|base|description|image|readers|trees|film|compile|frame)"
             below = tops "/[A-Za-z0-9_./*-]*[A-Za-z0-9_*]"
             file = folders "/[a-z0-9_/]*[a-z0-9_]\\.(h|cuh|cpp|cu)(\\.in)?"

@@ -18,7 +18,7 @@ if [ -z "$program" ]; then
 fi
 
 folders=()
-for folder in libcore backend_embree backend_cuda apps bench testing tests examples; do
+for folder in libcore backend_embree backend_cuda apps python bench testing tests examples; do
     [ ! -d "$folder" ] || folders+=("$folder")
 done
 find "${folders[@]}" -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh' \) -print0 |

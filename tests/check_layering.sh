@@ -34,6 +34,7 @@ rooms=(
     render    # what a renderer fills, what a frame shows, and the interface of backends
     sequence  # films: frames one after the other, written, resumed, put together
     compare   # pictures and suites of golden images
+    verify    # hard cases, by which the renderer checks itself
 )
 
 fail() {  # fail RULE < matches
@@ -64,7 +65,7 @@ layers() {
     while [ $# -gt 0 ]; do
         folder=$1
         shift
-        found=(libcore/"$name$folder"/**/*.{h,cpp})
+        found=(libcore/"$name$folder"/**/*.{h,cpp,cu})
         later="$*"
         [ -z "$later" ] || includes "${found[@]}" | { grep -E "\"$name(${later// /|})/" || true; } |
             fail "$name$folder lies below ${later// /, }"
@@ -75,7 +76,7 @@ layers() {
 
 check() {
     cd "$1"
-    local core=(libcore/cistula/*/*) below=(libcore/{base,image,scene,render}/**/*.{h,cpp}) above=(libcore/{sequence,compare}/**/*.{h,cpp})
+    local core=(libcore/cistula/*/*) below=(libcore/{base,image,scene,render}/**/*.{h,cpp}) above=(libcore/{sequence,compare,verify}/**/*.{h,cpp,cu})
     # What decides values of pictures.
     local pictures=(libcore/{base,image,scene,render/record,render/frame}/**/*.{h,cpp})
     local embree=(backend_embree/**/*.{h,cpp})
@@ -98,17 +99,23 @@ check() {
         fail 'what backends stand on knows neither backends nor programs'
     includes "${above[@]}" | { grep -E 'apps/|testing/|["<]cuda_' || true; } |
         fail 'the library knows no programs'
+    includes libcore/verify/**/*.{h,cpp,cu} | { grep '"compare/' || true; } |
+        fail 'verify and compare do not know each other'
     code '(std::(cout|cerr|clog)|[^a-z_](printf|puts|fputs|perror|_exit|exit|signal|sigaction|set_new_handler) *[(])' "${below[@]}" "${above[@]}" |
         { grep -vE '^libcore/image/reader/(reader_main|reader_answer|picture_oiio)\.cpp:|snprintf' || true; } |
         fail 'the library prints nothing, ends no program and handles no signals'
-    includes "${embree[@]}" | { grep -E 'backend_cuda|apps/|testing/|["<]cuda|"(sequence|compare)/' || true; } |
+    # Those of other programs, and CSS.
+    code '"[^"]*--[a-z]' "${core[@]}" "${below[@]}" "${above[@]}" "${embree[@]}" "${cuda[@]}" |
+        { grep -vE '^libcore/compare/(metrics/flip|page/page_style|suite/suite_page)\.cpp:' || true; } |
+        fail 'the library knows no options: texts name a setting as `max_samples` (base/error.h)'
+    includes "${embree[@]}" | { grep -E 'backend_cuda|apps/|testing/|["<]cuda|"(sequence|compare|verify)/' || true; } |
         fail 'backend_embree knows neither backend_cuda nor what stands on both'
     includes "${cuda[@]}" | { grep -E 'backend_embree|apps/|bench/|testing/|embree[34]/' || true; } |
         fail 'backend_cuda knows neither backend_embree nor programs'
     # Quoted are the rooms below it and itself.
     includes "${cuda[@]}" | { grep -E '#[ \t]*include[ \t]*"' || true; } | { grep -vE '"(cistula|base|image|scene|render|backend_cuda)/[a-z0-9_/]+\.(h|cuh)"' || true; } |
         fail 'backend_cuda includes what backends stand on, "backend_cuda/..." and installed libraries'
-    includes "${apps[@]}" | { grep -E '"(bench|tests|testing/support)/' || true; } |
+    includes "${apps[@]}" | { grep -E '"(bench|tests|testing)/' || true; } |
         fail 'programs know neither benchmarks nor tests'
     # Lines that include another program's folder.
     includes "${apps[@]}" | awk '{ split($0, at, "/"); if (match($0, /"apps\/[a-z_]+\//)) { to = substr($0, RSTART + 6, RLENGTH - 7); if (to != "common" && to != at[2]) print } }' |
@@ -153,7 +160,7 @@ check() {
 }
 
 good_tree() {
-    mkdir -p "$1"/{libcore/cistula/{numerics,model,lights},libcore/{base,image/exr,sequence,compare},libcore/render/{record,frame},libcore/scene/compile,backend_embree/host,backend_cuda/kernels,testing/support,apps/{common,render},bench/gpu,cmake}
+    mkdir -p "$1"/{libcore/cistula/{numerics,model,lights},libcore/{base,image/exr,sequence,compare,verify/cases},libcore/render/{record,frame},libcore/scene/compile,backend_embree/host,backend_cuda/kernels,testing/support,apps/{common,render},bench/gpu,cmake}
     printf '#pragma once\n#include <cmath>\n#ifdef __CUDACC__\n#endif\n#error "build without -ffast-math"\n' >"$1/$portable"
     printf 'add_executable(gpu_check_fast EXCLUDE_FROM_ALL a.cu)\ntarget_compile_options(gpu_check_fast PRIVATE --use_fast_math)\n' >"$1/bench/gpu/CMakeLists.txt"
     printf '#pragma once\n#include <glm/vec3.hpp>\n#include "cistula/numerics/portable.h"\n// not std::pow(x)\n' >"$1/libcore/cistula/model/good.h"
@@ -185,19 +192,25 @@ all_rules() {
     breaks libcore/image/exr/a.cpp '#include "render/record/film.h"'
     breaks libcore/image/exr/a.cpp '#include "backend_embree/embree/embree_renderer.h"'
     breaks libcore/render/frame/a.cpp '#include "sequence/sequence_loop.h"'
-    breaks libcore/render/frame/a.cpp '#include "testing/generated_scene.h"'
+    breaks libcore/render/frame/a.cpp '#include "verify/scenes/generated_scene.h"'
     breaks libcore/scene/compile/a.cpp '#include "render/renderer.h"'
     breaks libcore/scene/compile/a.cpp '#include "scene/a.h"'
     breaks libcore/sequence/a.cpp '#include "compare/suite/suite.h"'
     breaks libcore/sequence/a.cpp '#include "apps/common/command_line.h"'
+    breaks libcore/compare/a.cpp '#include "verify/verify.h"'
+    breaks libcore/verify/a.cpp '#include "compare/page/page_parts.h"'
+    breaks libcore/verify/cases/a.cu '#include "testing/support/scene.h"'
     breaks libcore/compare/a.cpp 'void f() { std::fputs("", stderr); }'
     breaks libcore/base/a.cpp 'void f() { std::signal(2, f); }'
+    breaks libcore/sequence/a.cpp 'const char* text = "raise --max-samples";'
+    breaks backend_cuda/kernels/a.cu 'const char* text = "a smaller --res needs less";'
     breaks backend_embree/host/a.cpp '#include "sequence/sequence_loop.h"'
-    breaks backend_embree/host/a.cpp '#include "testing/generated_scene.h"'
-    breaks backend_cuda/kernels/a.h '#include "testing/draw/draw.h"'
+    breaks backend_embree/host/a.cpp '#include "verify/scenes/generated_scene.h"'
+    breaks backend_cuda/kernels/a.h '#include "verify/draw.h"'
     breaks apps/render/a.cpp '#include "bench/gpu/record.h"'
     breaks apps/render/a.cpp '#include "testing/support/gpu.h"'
-    breaks apps/render/a.cpp '#include "apps/render_report/record.h"'
+    breaks apps/render/a.cpp '#include "testing/parity/record.h"'
+    breaks apps/render/a.cpp '#include "apps/render_merge/options.h"'
     breaks apps/common/a.cpp '#include "apps/render/options.h"'
     breaks bench/gpu/a.cpp '#include "tests/gpu.h"'
     breaks testing/a.cpp '#include "bench/gpu/record.h"'

@@ -14,9 +14,20 @@
 #include "base/file_bytes.h"
 #include "base/stages.h"
 #include "base/suggest.h"
+#include "sequence/render_request.h"
 
 namespace cistula {
 namespace {
+
+/// Options that are not called after their keys.
+constexpr std::pair<std::string_view, std::string_view> other_names[] = {
+    {"scene", "SCENE"},      {"output", "--output,-o"}, {"frames", "-f,--frames"},
+    {"resolution", "--res"}, {"quiet", "-q,--quiet"},   {"verbose", "-v,--verbose"}};
+
+/// Settings that messages of the library name and that are no keys of a request.
+constexpr std::string_view other_settings[] = {"failflip", "failssim",     "jobs",          "run_commands",
+                                               "fail",     "hardfail",     "mask",          "filter",
+                                               "update",   "list_devices", "print_template"};
 
 std::vector<std::string> long_names(const CLI::App& app) {
     std::vector<std::string> names;
@@ -51,13 +62,34 @@ void open_standard_streams() {
 
 }  // namespace
 
+std::string option_names(std::string_view key) {
+    for (const auto& [name, names] : other_names)
+        if (name == key) return std::string(names);
+    std::string option = "--" + std::string(key);
+    std::replace(option.begin(), option.end(), '_', '-');
+    return option;
+}
+
+std::string option_name(std::string_view key) {
+    const auto is_it = [&](const RequestKey& known) { return known.name == key; };
+    if (std::none_of(request_keys().begin(), request_keys().end(), is_it) &&
+        std::count(std::begin(other_settings), std::end(other_settings), key) == 0)
+        return "";
+    const std::string names = option_names(key);
+    return names.substr(names.rfind(',') + 1);
+}
+
+std::string with_options(std::string_view text) {
+    return name_keys(text, option_name);
+}
+
 void read_given(const std::string& option, const std::string& text, const OptionReader& read) {
     constexpr size_t longest = 200;
     if (text.empty()) fail_usage(fmt::format("{}: the value is empty; --help shows what it takes", option));
     try {
         read(text);
     } catch (const Error& error) {
-        throw Error(error.code(), fmt::format("{} {}: {}", option, first_characters(text, longest), error.what()));
+        throw Error(error.kind(), fmt::format("{} {}: {}", option, first_characters(text, longest), error.what()));
     }
 }
 
@@ -112,7 +144,7 @@ void print(const std::string& text) {
 }
 
 void note(const std::string& line) {
-    std::fputs((message_line(line) + "\n").c_str(), stderr);
+    std::fputs((with_options(message_line(line)) + "\n").c_str(), stderr);
 }
 
 int run_program(const char* name, const std::string& memory_advice, const std::function<int()>& work) {
@@ -126,7 +158,7 @@ int run_program(const char* name, const std::string& memory_advice, const std::f
     } catch (const std::exception& error) {
         const Failure failure = failure_of(error, memory_advice);
         note(fmt::format("{}: {}", name, failure.text));
-        return static_cast<int>(failure.code);
+        return static_cast<int>(exit_code(failure.kind));
     }
 }
 

@@ -17,6 +17,31 @@ class Option;
 
 namespace cistula {
 
+/// Exit codes of every program (docs/programs.md).
+enum class ExitCode : int {
+    done = 0,
+    failed = 1,  // a comparison or a test case failed
+    usage = 2,   // the command line or the scene is wrong
+    file = 3,    // a file cannot be read or written
+    device = 4,  // no usable GPU, or CUDA is not in this build
+    target = 5,  // --target-error was not met
+    interrupted = 130,
+};
+
+/// That of a program which an error ends.
+constexpr ExitCode exit_code(ErrorKind kind) {
+    constexpr ExitCode codes[] = {ExitCode::usage,  ExitCode::usage,  ExitCode::file,       ExitCode::device,
+                                  ExitCode::failed, ExitCode::target, ExitCode::interrupted};
+    return codes[static_cast<size_t>(kind)];
+}
+
+/// The option by which programs take a setting, with all its names, that of messages last: "--output,-o".
+std::string option_names(std::string_view key);
+/// The one of messages; empty if no program takes it.
+std::string option_name(std::string_view key);
+/// A text of the library in which settings are named as options.
+std::string with_options(std::string_view text);
+
 /// Reads the text of an option into a variable, which outlives it. Throws Error (usage): what would be right. Who calls
 /// it puts the option and the text before that.
 using OptionReader = std::function<void(const std::string& text)>;
@@ -66,7 +91,8 @@ bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
 /// Writes to standard output. Throws Error (file).
 void print(const std::string& text);
 
-/// Writes a line to standard error. A failure changes nothing: what is said there never decides about files.
+/// Writes a line to standard error, settings in it as options. A failure changes nothing: what is said there never
+/// decides about files.
 void note(const std::string& line);
 
 /// Runs a program's work and returns the exit code; exceptions become a line on standard error that begins with `name`.

@@ -1,7 +1,6 @@
-// Compiled for any x86-64. It must use no templates and no inline functions of the library: the linker keeps one copy
-// of each, possibly the one compiled for the baseline.
-#include "apps/common/cpu_baseline.h"
-
+// Check of the processor's instruction set before any instruction that it may lack is executed, in every program that
+// links the target cistula_cpu_baseline. Compiled for any x86-64. It must use no templates and no inline functions of
+// the library: the linker keeps one copy of each, possibly the one compiled for the baseline.
 #include <cpuid.h>
 #include <string.h>
 #include <unistd.h>
@@ -11,12 +10,18 @@ namespace {
 
 // __builtin_cpu_supports lacks MOVBE and, in some compilers, LZCNT and F16C.
 bool has_leaf1_ecx(unsigned bit) {
-    unsigned a = 0, b = 0, c = 0, d = 0;
+    unsigned a = 0;
+    unsigned b = 0;
+    unsigned c = 0;
+    unsigned d = 0;
     return __get_cpuid(1, &a, &b, &c, &d) && (c & bit);
 }
 
 bool has_lzcnt() {
-    unsigned a = 0, b = 0, c = 0, d = 0;
+    unsigned a = 0;
+    unsigned b = 0;
+    unsigned c = 0;
+    unsigned d = 0;
     return __get_cpuid(0x80000001u, &a, &b, &c, &d) && (c & bit_LZCNT);
 }
 
@@ -25,9 +30,10 @@ void append(char* line, size_t capacity, const char* text) {
     strncat(line, text, capacity - used - 1);
 }
 
-}  // namespace
-
-void require_cpu_baseline() {
+/// Writes one line to standard error and ends the program with exit code 2 on a processor (or under a kernel) that
+/// lacks any part of x86-64-v3: AVX, AVX2, FMA, BMI1, BMI2, F16C, LZCNT, MOVBE. 101 is the first priority available to
+/// programs: before every static constructor without a priority.
+__attribute__((constructor(101))) void require_cpu_baseline() {
     __builtin_cpu_init();
     const struct {
         const char* name;
@@ -53,13 +59,6 @@ void require_cpu_baseline() {
     const ssize_t written = write(STDERR_FILENO, line, strlen(line));
     (void)written;
     _exit(2);
-}
-
-namespace {
-
-// 101 is the first priority available to programs: before every static constructor without a priority.
-__attribute__((constructor(101))) void require_cpu_baseline_at_start() {
-    require_cpu_baseline();
 }
 
 }  // namespace

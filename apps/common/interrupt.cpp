@@ -5,7 +5,7 @@
 #include <csignal>
 #include <iterator>
 
-#include "base/error.h"
+#include "apps/common/command_line.h"
 #include "sequence/snapshots.h"
 
 namespace cistula {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <string>
 
+#include "apps/common/command_line.h"
 #include "apps/common/sequence_progress.h"
-#include "base/error.h"
 
 namespace cistula {
 

@@ -12,8 +12,8 @@
 #include "cistula/model/effects.h"
 #include "cistula/model/lattice_settings.h"
 #include "cistula/transport/ray_tree.h"
-#include "render/frame_settings.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
+#include "render/renderer.h"
 #include "scene/readers/read_scene.h"
 #include "sequence/frame_list.h"
 
@@ -23,7 +23,8 @@ namespace {
 ChosenPixel parse_pixel(std::string_view text) {
     const size_t comma = text.find(',');
     if (comma != text.npos) {
-        const auto x = whole_number<int>(text.substr(0, comma)), y = whole_number<int>(text.substr(comma + 1));
+        const auto x = whole_number<int>(text.substr(0, comma));
+        const auto y = whole_number<int>(text.substr(comma + 1));
         if (x && y && *x >= 0 && *y >= 0) return {*x, *y};
     }
     fail_usage("must be X,Y in pixels from the top left, which is 0,0, as in 320,240");
@@ -47,7 +48,7 @@ void check_pixel(const std::string& pixel, const RenderCommand& command) {
     };
     for (const auto& [why, keys] : senseless)
         for (const char* key : keys)
-            if (request_key(key).given(command)) refuse("--pixel", pixel, option_name(request_key(key)), why);
+            if (request_key(key).given(command)) refuse("--pixel", pixel, option_name(key), why);
     if (command.frames.size() > 1)
         fail_usage(fmt::format("--frames names {} frames, and --pixel {} is of one; name that one",
                                command.frames.size(), pixel));
@@ -57,7 +58,8 @@ void check_pixel(const std::string& pixel, const RenderCommand& command) {
 
 CLI::Option* add_key(CLI::App& app, RenderRequest& request, std::string_view name, const char* description) {
     const RequestKey& key = request_key(name);
-    const std::string option(key.option), help(description ? description : key.help);
+    const std::string option = option_names(name);
+    const std::string help = with_options(description ? description : key.help);
     if (key.type == KeyType::boolean)
         return app.add_flag_callback(
             option, [&request, &key] { key.set(request, "true"); }, help);
@@ -65,6 +67,9 @@ CLI::Option* add_key(CLI::App& app, RenderRequest& request, std::string_view nam
                       [&request, &key](const std::string& text) { key.set(request, text); });
 }
 
+namespace {
+
+/// Adds render's options to a command line; `command` must outlive it.
 void declare_render_options(CLI::App& app, RenderCommand& command) {
     for (const RequestKey& key : request_keys()) add_key(app, command, key.name);
     const auto add_action = [&](const char* name, const char* description, Action action) {
@@ -95,6 +100,7 @@ void declare_render_options(CLI::App& app, RenderCommand& command) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
+/// Checks how the options that were given fit together. Throws Error (usage).
 void check_render_options(const CLI::App& app, const RenderCommand& command) {
     const std::string pixel = given_text(app, "--pixel");
     if (!pixel.empty()) check_pixel(pixel, command);
@@ -114,6 +120,8 @@ void check_render_options(const CLI::App& app, const RenderCommand& command) {
     if (command.scene.empty())
         fail_usage("no scene is given: render SCENE -o FILE.exr, or - for standard input; --help tells more");
 }
+
+}  // namespace
 
 RenderCommand parse_options(int argc, const char* const* argv) {
     CLI::App app;

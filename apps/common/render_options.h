@@ -1,5 +1,5 @@
-// The command line of `render`, parsed and checked as far as possible without the scene. `render-farm` takes it, too.
-// Other programs have some of its options.
+// The command line of `render`, parsed and checked as far as possible without the scene. Other programs have some
+// of its options.
 #pragma once
 
 #include <string>
@@ -20,7 +20,9 @@ class Option;
 namespace cistula {
 
 struct ChosenPixel {
-    int x = 0, y = 0;  // from the top left of the full frame
+    // from the top left of the full frame
+    int x = 0;
+    int y = 0;
 };
 
 enum class Action { render, explain, measure, pixel, print_help, print_version, print_template, list_devices };
@@ -34,12 +36,6 @@ struct RenderCommand : RenderRequest {
 
 /// Adds the option of a key, with another description if one is given; `request` must outlive it.
 CLI::Option* add_key(CLI::App& app, RenderRequest& request, std::string_view key, const char* description = nullptr);
-
-/// Adds render's options to a command line; `command` must outlive it.
-void declare_render_options(CLI::App& app, RenderCommand& command);
-
-/// Checks how the options that were given fit together. Throws Error (usage).
-void check_render_options(const CLI::App& app, const RenderCommand& command);
 
 /// Parses the command line. Throws Error (usage); the message names the option, what is wrong and what would be right.
 RenderCommand parse_options(int argc, const char* const* argv);

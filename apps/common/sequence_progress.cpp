@@ -118,7 +118,8 @@ void SequenceProgress::end(const RunStats&, size_t done, size_t frames) {
     record({"end", -1, "", -1, fmt::format("{} of {} frames written", done, frames)});
 }
 
-void SequenceProgress::say(const std::string& line) {
+void SequenceProgress::say(const std::string& text) {
+    const std::string line = with_options(text);
     line_.say(line);
     record({"message", -1, "", -1, line});
 }

@@ -65,7 +65,8 @@ class SequenceProgress : public SequenceEvents {
     Clock::time_point start_ = Clock::now();
     bool in_frame_ = false;
     int frame_ = 0;
-    size_t index_ = 0, count_ = 1;
+    size_t index_ = 0;
+    size_t count_ = 1;
     uint64_t pixels_ = 1;
     Clock::time_point frame_start_ = start_;
     StatusLine line_;  // declared last: it uses the members above

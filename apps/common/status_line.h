@@ -64,7 +64,8 @@ class StatusLine {
     const std::function<std::string(int columns)> text_;
     std::mutex mutex_;
     std::condition_variable wake_;
-    bool stop_ = false, drawn_ = false;
+    bool stop_ = false;
+    bool drawn_ = false;
     Clock::time_point last_line_ = Clock::now();
     std::thread thread_;
 };

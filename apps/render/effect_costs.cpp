@@ -1,4 +1,4 @@
-#include "effect_costs.h"
+#include "explain.h"
 
 #include <bit>
 
@@ -22,7 +22,7 @@ struct Variant {
         bool whole = false;
         const double all = seconds_of([&] { whole = renderer->render(camera, settings, film, progress.render); });
         progress.advance();
-        if (!whole) throw Error(ExitCode::interrupted, "interrupted");
+        if (!whole) throw Error(ErrorKind::interrupted, "interrupted");
         const double kernel = renderer->times().kernel;
         if (counts) time.runs.push_back((kernel > 0 ? kernel : all) * 1e3);
     }

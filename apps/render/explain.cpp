@@ -30,8 +30,8 @@ Explanation explained(SceneSource source) {
     Explanation explanation{std::move(compiled->effect_reasons), {}};
     const std::vector<Overlap> overlaps = find_overlaps(*compiled);
     for (size_t i = 0; i < overlaps.size() && i < most_overlaps; ++i) {
-        const std::string first = one_line(compiled->solid_names[overlaps[i].first]),
-                          second = one_line(compiled->solid_names[overlaps[i].second]);
+        const std::string first = one_line(compiled->solid_names[overlaps[i].first]);
+        const std::string second = one_line(compiled->solid_names[overlaps[i].second]);
         explanation.overlaps.push_back(
             fmt::format("{0} and {1} overlap: {1}, the later in the file, fills what they share.", first, second));
     }
@@ -50,7 +50,8 @@ std::string explain_table(const std::string& scene, const Explanation& explanati
                           const EffectCosts* costs) {
     const std::vector<EffectReason>& reasons = explanation.effects;
     const uint32_t required = required_effects(reasons);
-    const int first = backend == Backend::embree ? least_lane_mask : 0, chosen = std::max(least_mask(required), first);
+    const int first = backend == Backend::embree ? least_lane_mask : 0;
+    const int chosen = std::max(least_mask(required), first);
     const uint32_t mask = effect_masks[chosen];
 
     constexpr const char* row = "{:<20} {:<7} {:<9} {}{}\n";

@@ -21,7 +21,7 @@
 #include "image/exr/exr.h"
 #include "render/pixel_report.h"
 #include "scene/compile/materials/required_effects.h"
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "sequence/backends.h"
 #include "sequence/render_sequence.h"
 #include "sequence/run_files.h"
@@ -180,8 +180,8 @@ void report_pixel(const RenderCommand& request, const SceneDescription& descript
     else if (!request.json.empty())
         write_file_atomically(request.json, pixel_json(report));
     if (!flaws.empty())
-        throw Error(ExitCode::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", description.source,
-                                                  request.pixel.x, request.pixel.y, flaws));
+        throw Error(ErrorKind::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", description.source,
+                                                   request.pixel.x, request.pixel.y, flaws));
 }
 
 void report_pixel(const RenderCommand& request) {
@@ -189,7 +189,7 @@ void report_pixel(const RenderCommand& request) {
     const FrameSettings settings = frame_settings(request, scene);
     const ChosenPixel& pixel = request.pixel;
     if (pixel.x >= settings.full_width || pixel.y >= settings.full_height)
-        throw Error(ExitCode::usage,
+        throw Error(ErrorKind::usage,
                     fmt::format("--pixel {},{}: is outside of the frame, which is {}x{}; its last pixel is {},{}",
                                 pixel.x, pixel.y, settings.full_width, settings.full_height, settings.full_width - 1,
                                 settings.full_height - 1));
@@ -215,7 +215,7 @@ void run(const RenderCommand& request, std::string& memory_advice) {
         case Action::print_template:
             return print(text_input_template());
         case Action::list_devices:
-            return print(list_devices_text());
+            return print(with_options(list_devices_text()));
         case Action::pixel:
             return report_pixel(request);
         case Action::measure:
@@ -233,7 +233,7 @@ void run_and_record(const RenderCommand& request, std::string& memory_advice) {
         run(request, memory_advice);
     } catch (const std::exception& error) {
         const Failure failure = failure_of(error, memory_advice);
-        const std::string lines = failure_record(request.progress, failure.text, failure.code);
+        const std::string lines = failure_record(request.progress, with_options(failure.text), exit_code(failure.kind));
         if (!lines.empty()) std::fputs((lines + "\n").c_str(), stdout);
         std::fflush(stdout);
         throw;

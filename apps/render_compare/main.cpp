@@ -1,62 +1,140 @@
 // render-compare: compares two images, or scenes with their golden images.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
-#include <optional>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <set>
 #include <string_view>
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_bytes.h"
 #include "base/shown_text.h"
 #include "compare/metrics/compare.h"
-#include "compare/metrics/flip.h"
 #include "compare/metrics/report.h"
 #include "compare/metrics/sums.h"
 #include "image/exr/exr.h"
 #include "image/reader/picture_reader.h"
 #include "options.h"
+#include "sequence/output_name.h"
 #include "suite_options.h"
 
 namespace cistula {
 namespace {
 
-/// Writes the difference image; returns a line where there is nothing to write.
-std::string write_differences(const CompareOptions& options, const StoredFile& a, const StoredFile& b) {
-    const std::vector<PicturePart> parts = difference_parts(a, b, options.selection);
-    if (parts.empty()) return one_line(options.diff) + ": not written, as no pixel has a partner\n";
-    write_exr(options.diff, parts);
-    return "";
+/// Two images that are compared, in the way of the options.
+struct Judged {
+    bool holds = false;
+    std::string verdict, text;  // a line, and the report
+    nlohmann::ordered_json json;
+};
+
+Judged judge_files(const CompareOptions& options, const std::string& first, const std::string& second,
+                   StopSignal stop) {
+    StoredReader reader;
+    const StoredFile a = reader.read(first);
+    const StoredFile b = reader.read(second);
+    stop.check();
+    Selection selection = options.selection;
+    if (!options.mask.empty()) selection.mask = mask_of(reader.read(options.mask).pictures.front());
+    Comparison comparison = compare_files(a, b, options.thresholds, selection, stop);
+    for (std::string& line : comparison.not_compared) line = with_options(line);
+    Judged judged{passes(comparison, options.thresholds), with_options(verdict(comparison, options.thresholds)),
+                  with_options(report_text(comparison, options.thresholds)),
+                  report_json(comparison, options.thresholds, first, second)};
+    judged.json["verdict"] = judged.verdict;
+    if (!options.diff.empty()) {
+        const std::vector<PicturePart> parts = difference_parts(a, b, selection);
+        if (parts.empty())
+            judged.text += one_line(options.diff) + ": not written, as no pixel has a partner\n";
+        else
+            write_exr(options.diff, parts);
+    }
+    return judged;
 }
 
-bool compare_images(CompareOptions options) {
-    StoredReader reader;
-    const StoredFile a = reader.read(options.a), b = reader.read(options.b);
-    if (!options.mask.empty()) options.selection.mask = mask_of(reader.read(options.mask).pictures.front());
-    const Comparison comparison = compare_files(a, b, options.thresholds, options.selection);
-    std::optional<FlipResult> flip;
-    if (options.flip) {
-        std::atomic<bool> stop = false;
-        InterruptGuard guard;  // before there are files and processes
-        guard.watch(stop);
-        flip = flip_of(a, b, options.selection, stop);
+/// The images of a folder by their names, those of a sequence by their numbers.
+std::map<std::string, std::string> images_of(const std::string& text) {
+    namespace fs = std::filesystem;
+    constexpr std::string_view kinds[] = {".exr", ".png", ".tif", ".tiff", ".jpg", ".jpeg",
+                                          ".hdr", ".tga", ".bmp", ".dpx",  ".webp"};
+    std::map<std::string, std::string> images;
+    const bool is_folder = fs::is_directory(text);
+    const OutputName name = is_folder ? OutputName() : OutputName(text, "the images");
+    const fs::path folder = is_folder ? fs::path(text) : fs::path(text).parent_path();
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
+        const std::string own = entry.path().filename().string();
+        const std::string path = (folder / own).string();
+        if (is_folder) {
+            if (std::count(std::begin(kinds), std::end(kinds), lower_extension(own)) > 0) images[own] = path;
+            continue;
+        }
+        for (const int frame : numbers_in(own))
+            if (fs::path(name.for_frame(frame)).filename() == own) images[std::to_string(frame)] = path;
     }
-    std::string text = report_text(comparison, options.thresholds, flip ? &*flip : nullptr);
-    if (!options.diff.empty()) text += write_differences(options, a, b);
-    if (!options.json.empty())
-        write_file_atomically(options.json,
-                              report_json(comparison, options.thresholds, options.a, options.b, flip ? &*flip : nullptr)
-                                      .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                                  "\n");
-    if (!options.quiet) print(text);
-    return passes(comparison, options.thresholds);
+    if (error) throw file_error(folder.string(), "read", error.value());
+    if (images.empty()) throw Error(ErrorKind::file, "has no images").at(text);
+    return images;
+}
+
+/// Several images and their partners, a line for each.
+Judged judge_several(const CompareOptions& options, StopSignal stop) {
+    const std::map<std::string, std::string> first = images_of(options.a);
+    const std::map<std::string, std::string> second = images_of(options.b);
+    std::set<std::string> names;
+    for (const auto* images : {&first, &second})
+        for (const auto& [name, path] : *images) names.insert(name);
+    Judged all;
+    all.json = {{"first", options.a}, {"second", options.b}, {"holds", true}, {"images", nlohmann::json::array()}};
+    size_t held = 0;
+    for (const std::string& name : names) {
+        const auto a = first.find(name);
+        const auto b = second.find(name);
+        Judged one;
+        if (a == first.end() || b == second.end()) {
+            one.verdict = a == first.end() ? "only in the second" : "only in the first";
+            one.json = {{"holds", false}, {"verdict", one.verdict}};
+        } else {
+            one = judge_files(options, a->second, b->second, stop);
+        }
+        held += one.holds;
+        one.json["name"] = name;
+        all.json["images"].push_back(std::move(one.json));
+        all.text += fmt::format("{}: {}\n", one_line(name), one_line(one.verdict));
+    }
+    all.holds = held == names.size();
+    all.json["holds"] = all.holds;
+    all.text += all.holds ? fmt::format("hold: all {} images\n", held)
+                          : fmt::format("differ: {} of {} images\n", names.size() - held, names.size());
+    return all;
+}
+
+bool compare_images(const CompareOptions& options) {
+    std::atomic<bool> stop = false;
+    InterruptGuard guard;  // before there are files and processes
+    guard.watch(stop);
+    const Judged judged =
+        names_several(options.a) ? judge_several(options, stop) : judge_files(options, options.a, options.b, stop);
+    const std::string json = judged.json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    if (options.json == "-")
+        print(json);
+    else if (!options.json.empty())
+        write_file_atomically(options.json, json);
+    if (!options.quiet && options.json != "-") print(judged.text);
+    return judged.holds;
 }
 
 bool check_sums(const CompareOptions& options) {
     const LayeredPicture picture = read_exr(options.a);
     const std::vector<DivisionSums> divisions = division_sums(picture);
     if (divisions.empty())
-        throw Error(ExitCode::file,
+        throw Error(ErrorKind::file,
                     one_line(options.a) +
                         ": has no R G B with all layers by path or by light; render --layers path,light writes them");
     if (!options.quiet)

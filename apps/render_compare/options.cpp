@@ -5,10 +5,12 @@
 #include <CLI/CLI.hpp>
 
 #include <cmath>
+#include <filesystem>
 
 #include "apps/common/command_line.h"
 #include "base/file_bytes.h"
 #include "render/picture_size.h"
+#include "sequence/output_name.h"
 #include "sequence/run_files.h"
 
 namespace cistula {
@@ -40,7 +42,8 @@ void declare(CLI::App& app, CompareOptions& options, std::string& sums) {
     constexpr const char* amount = "a number, 0 or above, in the units of the channels";
     Thresholds& thresholds = options.thresholds;
     Selection& selection = options.selection;
-    app.add_option("A", options.a, "an image; differences are relative to it")->type_name("");
+    app.add_option("A", options.a, "an image, a folder, or a sequence, as a.####.exr; differences are relative to it")
+        ->type_name("");
     app.add_option("B", options.b, "another")->type_name("");
     CLI::Option* const fail = add_option(app, "--fail", "E", "a pixel fails where a channel differs by more than E",
                                          read_number(thresholds.fail, 0, INFINITY, amount));
@@ -49,19 +52,23 @@ void declare(CLI::App& app, CompareOptions& options, std::string& sums) {
         ->needs(fail);
     add_option(app, "--hardfail", "E", "no pixel may differ by more than E",
                read_number(thresholds.hardfail, 0, INFINITY, amount));
+    add_option(app, "--failflip", "E", "the mean of FLIP may be no more than E",
+               read_number(thresholds.flip, 0, 1, "a number from 0 to 1"));
+    add_option(app, "--failssim", "S", "SSIM of no channel may be less than S",
+               read_number(thresholds.ssim, -1, 1, "a number from -1 to 1"));
     add_option(app, "--layers", "LIST", "only channels and layers of these names, with * and ?; e.g. R,G,B,diffuse.*",
                read_by(selection.layers, parse_patterns));
     app.add_flag("--intersection", selection.intersection, "only pixels that both data windows have");
     add_option(app, "--crop", "X,Y,W,H", "only these pixels; X and Y in the file's pixel space",
                read_by(selection.crop, parse_window));
     app.add_option("--mask", options.mask, "only pixels where this image is above 0")->type_name("FILE");
-    add_option(app, "--metrics", "LIST", "also ssim, or flip (by NVIDIA's program), or both",
-               [&](const std::string& text) {
-                   for (const std::string_view metric : parts_at_commas(text))
-                       *chosen<bool*>(std::string(metric), {{"ssim", &selection.ssim}, {"flip", &options.flip}}) = true;
-               });
+    add_option(
+        app, "--metrics", "LIST", "also ssim, or flip (by NVIDIA's program), or both", [&](const std::string& text) {
+            for (const std::string_view metric : parts_at_commas(text))
+                *chosen<bool*>(std::string(metric), {{"ssim", &selection.ssim}, {"flip", &selection.flip}}) = true;
+        });
     app.add_option("--diff", options.diff, "write the absolute differences as an image")->type_name("FILE.exr");
-    app.add_option("--json", options.json, "write the result as JSON")->type_name("FILE");
+    app.add_option("--json", options.json, "write the result as JSON; - is standard output")->type_name("FILE");
     app.add_option("--sums", sums, "whether an image's layers by path and by light add up to its R G B")
         ->type_name("FILE.exr");
     app.add_flag("-q,--quiet", options.quiet, "errors only; the exit code tells");
@@ -74,12 +81,17 @@ void check_images(const CompareOptions& options) {
     if (options.a.empty() || options.b.empty())
         fail_usage(fmt::format("{}; render-compare A.exr B.exr; --help tells more",
                                options.a.empty() ? "no images are given" : "only one image is given"));
+    if (names_several(options.a) != names_several(options.b))
+        fail_usage(fmt::format("{} and {}: one of them is several images; give two folders, or two sequences",
+                               options.a, options.b));
+    if (names_several(options.a) && !options.diff.empty())
+        fail_usage(fmt::format("--diff {}: is one image, and several are compared; leave it out", options.diff));
     RunFiles files;
     files.reads(options.a, "the first image");
     files.reads(options.b, "the second image");
     files.reads(options.mask, "--mask");
     files.writes(options.diff, "--diff");
-    files.writes(options.json, "--json");
+    if (options.json != "-") files.writes(options.json, "--json");
     if (!options.diff.empty() && lower_extension(options.diff) != ".exr")
         fail_usage(fmt::format("--diff {}: differences are written as an EXR; name it *.exr", options.diff));
 }
@@ -88,12 +100,18 @@ void check_images(const CompareOptions& options) {
 void check_sums(const CLI::App& app, const CompareOptions& options) {
     constexpr const char* why = "--sums looks at one image by itself; leave it out";
     if (!options.a.empty()) fail_usage(fmt::format("{}: {}", options.a, why));
-    for (const char* option : {"--fail", "--failpercent", "--hardfail", "--layers", "--intersection", "--crop",
-                               "--mask", "--metrics", "--diff", "--json"})
+    for (const char* option : {"--fail", "--failpercent", "--hardfail", "--failflip", "--failssim", "--layers",
+                               "--intersection", "--crop", "--mask", "--metrics", "--diff", "--json"})
         if (app.count(option) > 0) fail_usage(fmt::format("{}: {}", option, why));
 }
 
 }  // namespace
+
+bool names_several(const std::string& text) {
+    std::error_code error;
+    if (std::filesystem::exists(text, error)) return std::filesystem::is_directory(text, error);
+    return text.find_first_of("#%") != text.npos && OutputName(text, "the images").has_pattern();
+}
 
 CompareOptions parse_compare_options(int argc, const char* const* argv) {
     CLI::App app;
@@ -106,6 +124,8 @@ CompareOptions parse_compare_options(int argc, const char* const* argv) {
     if (!whole) options.action = CompareAction::print_help;
     if (options.action != CompareAction::compare) return options;
     if (sums.empty()) {
+        // With tolerances what both have is judged, where nothing else says what.
+        options.selection.common_channels = options.thresholds.any() && options.selection.layers.empty();
         check_images(options);
         return options;
     }
@@ -117,9 +137,9 @@ CompareOptions parse_compare_options(int argc, const char* const* argv) {
 
 std::string compare_help_text() {
     CLI::App app(
-        "Compares two images channel by channel: all parts of EXRs, and what OpenImageIO reads. Without thresholds "
-        "they "
-        "must be equal in every bit, header included.",
+        "Compares two images channel by channel: all parts of EXRs, and what OpenImageIO reads; or folders and "
+        "sequences of them. Without thresholds they must be equal in every bit, header included; with them what both "
+        "have is compared.",
         "render-compare");
     CompareOptions options;
     std::string sums;
@@ -130,6 +150,8 @@ Examples:
   render-compare float.exr double.exr --fail 0.002 --failpercent 0.1 --hardfail 0.5 --diff differences.exr
   render-compare a.png b.png --fail 2                      of 8 bits: by more than 2 codes
   render-compare whole.exr crop.exr --intersection --layers 'R,G,B,diffuse.*' --metrics ssim
+  render-compare ours/ theirs/ --layers R,G,B --fail 0.01  all images, by their names
+  render-compare a.####.exr b.%04d.exr --failssim 0.99     all frames, by their numbers
   render-compare --sums layers.exr                         whether layers by path and by light add up
   render-compare suite DIR                                 golden images of DIR/suite.json; suite --help tells more
 

@@ -11,8 +11,9 @@
 #include "apps/common/command_line.h"
 #include "apps/common/render_options.h"
 #include "base/suggest.h"
+#include "compare/suite/suite_render.h"
 #include "scene/compile/scene_source.h"
-#include "scene/readers/read_scene.h"
+#include "sequence/output_name.h"
 #include "sequence/run_files.h"
 
 namespace cistula {
@@ -32,9 +33,11 @@ void declare(CLI::App& app, SuiteOptions& options) {
     app.add_flag("--update", options.update,
                  "write golden images and hashes anew where they differ, and say what changed");
     add_option(app, "--jobs", "N", "cases that are rendered at once; 1", read_whole(options.jobs, 1, 1024));
+    app.add_flag("--run-commands", options.run_commands,
+                 "run the commands by which cases have other programs render; without it such cases fail");
     app.add_flag("--fail-fast", options.fail_fast, "begin no further case after one that failed");
-    app.add_option("--junit", options.junit, "write the results as JUnit XML")->type_name("FILE");
-    app.add_option("--json", options.json, "write the results as JSON")->type_name("FILE");
+    app.add_option("--junit", options.junit, "write the results as JUnit XML; - is standard output")->type_name("FILE");
+    app.add_option("--json", options.json, "write the results as JSON; - is standard output")->type_name("FILE");
     add_option(app, "--html", "DIR",
                "write the results, with what differs, as a page that needs nothing else: DIR/index.html",
                [&](const std::string& text) { options.html = (std::filesystem::path(text) / "index.html").string(); });
@@ -43,12 +46,10 @@ void declare(CLI::App& app, SuiteOptions& options) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
-/// Adds a scene, and the files that it names if they are asked for. What is wrong with a scene is said by its cases.
-void add_scene(const std::string& path, bool with_files, RunFiles& files) {
-    files.reads(path, "a scene");
-    if (!with_files) return;
+/// Adds the files that a scene names. What is wrong with a scene is said by its cases.
+void add_files_of_scene(const SuiteCase& one, const std::string& folder, RunFiles& files) {
     try {
-        files.reads_scene(path, gather_scene(read_scene(path)).files);
+        files.reads_scene(one.scene_path(folder), gather_scene(read_scene_of(one, folder)).files);
     } catch (const Error&) {
     }
 }
@@ -63,6 +64,8 @@ SuiteOptions parse_suite_options(int argc, const char* const* argv) {
         !parse_command_line(app, argc, argv, [](const std::string& extra) { return extra + ": no such word"; });
     if (app.count("--backend") > 0) options.backend = options.request.backend;
     options.devices = options.request.devices;
+    if (options.junit == "-" && options.json == "-") fail_usage("--junit - and --json -: give one of them a file");
+    options.quiet |= options.junit == "-" || options.json == "-";
     if (!options.help && options.folder.empty())
         fail_usage("no suite is given: render-compare suite DIR, the folder of a suite.json");
     return options;
@@ -88,28 +91,37 @@ void require_other_files(const Suite& suite, const SuiteOptions& options, const 
     namespace fs = std::filesystem;
     RunFiles files;
     files.reads(suite.path, "the suite");
+    const std::set<const SuiteCase*> rendered(chosen.begin(), chosen.end());
+    std::vector<std::string> written = {options.junit, options.json, options.html};
     std::error_code ignored;
     // A file that is not there yet is none that a scene names.
-    const bool replaces = options.update || fs::exists(options.junit, ignored) || fs::exists(options.json, ignored) ||
-                          fs::exists(options.html, ignored);
-    std::set<std::string> scenes;
-    for (const SuiteCase& one : suite.cases)
-        if (scenes.insert(one.scene_path(suite.folder)).second)
-            add_scene(one.scene_path(suite.folder), replaces, files);
-    for (const bool updated : {false, true})
-        for (const SuiteCase& one : suite.cases) {
-            const bool is_chosen = std::find(chosen.begin(), chosen.end(), &one) != chosen.end();
-            if ((options.update && is_chosen) != updated || one.golden.empty()) continue;
-            for (const int frame : one.frames) {
-                const std::string path = one.golden_path(suite.folder, frame);
-                if (updated)
-                    files.writes(path, "the golden image of " + one.name);
-                else
-                    files.reads(path, "the golden image of " + one.name);
-            }
+    const bool replaces = options.update || std::any_of(written.begin(), written.end(), [&](const std::string& path) {
+                              return fs::exists(path, ignored);
+                          });
+    std::set<std::string> scenes;  // of which the files are known
+    for (const SuiteCase& one : suite.cases) {
+        if (one.is_foreign()) continue;
+        files.reads(one.scene_path(suite.folder), "a scene");
+        if (replaces && rendered.contains(&one) && scenes.insert(one.scene_path(suite.folder)).second)
+            add_files_of_scene(one, suite.folder, files);
+    }
+    for (const SuiteCase* one : chosen)
+        for (size_t i = 0; options.update && !one->golden.empty() && i < one->frames.size(); ++i)
+            written.push_back(one->golden_path(suite.folder, one->frames[i]));
+    for (const SuiteCase& one : suite.cases) {
+        const bool many = one.frames.size() > 1;
+        for (const int frame : many ? frames_named_in(written, one.frames) : one.frames) {
+            if (!one.rendered.empty())
+                files.reads(one.rendered_path(suite.folder, frame), "the picture of " + one.name);
+            if (!one.golden.empty() && !(options.update && rendered.contains(&one)))
+                files.reads(one.golden_path(suite.folder, frame), "the golden image of " + one.name);
         }
-    files.writes(options.junit, "--junit");
-    files.writes(options.json, "--json");
+    }
+    for (const SuiteCase* one : chosen)
+        for (size_t i = 0; options.update && !one->golden.empty() && i < one->frames.size(); ++i)
+            files.writes(one->golden_path(suite.folder, one->frames[i]), "the golden image of " + one->name);
+    if (options.junit != "-") files.writes(options.junit, "--junit");
+    if (options.json != "-") files.writes(options.json, "--json");
     files.writes(options.html, "--html");
 }
 

@@ -9,7 +9,9 @@
 namespace cistula {
 
 struct SuiteOptions : SuiteRunSettings {
-    bool help = false, list = false, quiet = false;
+    bool help = false;
+    bool list = false;
+    bool quiet = false;
     std::string folder;
     RenderRequest request;          // backend and devices
     std::string junit, json, html;  // files; empty: none

@@ -22,17 +22,23 @@ std::string list_text(const std::vector<const SuiteCase*>& chosen) {
 
 /// Makes the folders of the files to be written, and finds out before the first picture if they cannot be written.
 void probe(const std::string& path) {
-    if (path.empty()) return;
+    if (path.empty() || path == "-") return;
     make_directory_of(path);
     const AtomicFile file(path);
 }
 
 void write_reports(const Suite& suite, const std::vector<SuiteResult>& results,
                    const std::vector<SuiteBackend>& backends, const SuiteCounts& counts, const SuiteOptions& options) {
-    if (!options.junit.empty()) write_file_atomically(options.junit, junit_xml(suite, results));
-    if (!options.html.empty()) write_file_atomically(options.html, suite_page(suite, results, counts));
+    const auto write = [](const std::string& path, const std::string& text) {
+        if (path == "-")
+            print(text);
+        else
+            write_file_atomically(path, text);
+    };
+    if (!options.junit.empty()) write(options.junit, junit_xml(suite, results));
+    if (!options.html.empty()) write(options.html, suite_page(suite, results, counts));
     if (!options.json.empty())
-        write_file_atomically(
+        write(
             options.json,
             suite_json(suite, results, backends, counts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
                 "\n");
@@ -58,7 +64,8 @@ int run_suite(int argc, const char* const* argv) {
         return static_cast<int>(ExitCode::done);
     }
     require_other_files(suite, options, chosen);
-    const std::vector<SuiteBackend> backends = find_backends(chosen, options);
+    std::vector<SuiteBackend> backends = find_backends(chosen, options);
+    for (SuiteBackend& backend : backends) backend.obstacle = with_options(backend.obstacle);
     for (const std::string& path : {options.junit, options.json, options.html}) probe(path);
 
     size_t name_width = 8;
@@ -68,20 +75,24 @@ int run_suite(int argc, const char* const* argv) {
     };
     say(table_head(suite, backends, name_width));
     SuiteUpdate update(suite);
+    RenderProgress progress;
+    InterruptGuard guard;
+    guard.watch(progress.stop);
     SuiteWork work;
     work.judged = [&](const SuiteFrame& frame, const LayeredPicture* golden, SuiteResult& result) {
         if (!options.html.empty() && result.failed())
-            result.page = failure_html(result, suite.folder, golden, frame.picture);
+            result.page = failure_html(result, suite.folder, golden, frame.picture, progress.stop);
         if (options.update) update.record(frame, golden, result);
     };
-    work.finished = [&](const std::vector<SuiteResult>& results) {
+    work.finished = [&](std::vector<SuiteResult>& results) {
+        for (SuiteResult& result : results) {
+            result.verdict = with_options(result.verdict);
+            for (std::string& note : result.notes) note = with_options(note);
+        }
         say(table_rows(results, name_width));
         if (options.update) update.finish(results);
     };
     std::vector<SuiteResult> results;
-    RenderProgress progress;
-    InterruptGuard guard;
-    guard.watch(progress.stop);
     try {
         results = run_cases(suite, chosen, backends, options, work, progress);
     } catch (const Error&) {
@@ -91,6 +102,9 @@ int run_suite(int argc, const char* const* argv) {
     update.write();
     const SuiteCounts counts = count_results(results, chosen.size());
     write_reports(suite, results, backends, counts, options);
+    if (progress.stop && counts.not_begun > 0)
+        throw Error(ErrorKind::interrupted, fmt::format("interrupted; {} of {} cases are judged",
+                                                        chosen.size() - counts.not_begun, chosen.size()));
     if (options.update)
         say(fmt::format("recorded: {} of {} pictures{}\n", update.changed(), results.size(),
                         counts.failed > 0 ? fmt::format("; {} failed", counts.failed) : ""));

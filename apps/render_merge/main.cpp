@@ -34,7 +34,8 @@ std::vector<std::string> layers_beside(const OutputName& name, int frame) {
     const std::string mark(1, '\1');
     const fs::path example = name.for_layer(frame, mark);
     const std::string file = example.filename().string();
-    const std::string before = file.substr(0, file.find(mark)), after = file.substr(file.find(mark) + 1);
+    const std::string before = file.substr(0, file.find(mark));
+    const std::string after = file.substr(file.find(mark) + 1);
     const std::string snapshot = fs::path(snapshot_of(name, frame)).filename().string();
     std::vector<std::string> layers;
     std::error_code error;
@@ -51,11 +52,12 @@ std::vector<std::string> layers_beside(const OutputName& name, int frame) {
 
 void require_tiles(const FileToMerge& file, const TileGrid& grid, int frame) {
     std::error_code error;
-    size_t missing = 0, first = 0;
+    size_t missing = 0;
+    size_t first = 0;
     for (size_t i = 0; i < file.tiles.size(); ++i)
         if (!fs::exists(file.tiles[i], error) && missing++ == 0) first = i;
     if (missing == 0) return;
-    throw Error(ExitCode::file,
+    throw Error(ErrorKind::file,
                 fmt::format("{}: {} of its {} tiles {} missing: {}{}; render --tiles {}x{} --tile {} -f {} makes it",
                             file.path, missing, file.tiles.size(), missing == 1 ? "is" : "are", file.tiles[first],
                             missing == 1 ? "" : " and others", grid.columns, grid.rows, first, frame));
@@ -82,7 +84,7 @@ std::vector<FileToMerge> files_to_merge(const MergeOptions& options, int frame) 
 
 const std::vector<float>& channel(const LayeredPicture& frame, const char* name, const std::string& path) {
     if (const LayeredPicture::Channel* found = channel_of(frame, name)) return found->values;
-    throw Error(ExitCode::usage, fmt::format("--preview {}: the tiles have no channel {}", path, name));
+    throw Error(ErrorKind::usage, fmt::format("--preview {}: the tiles have no channel {}", path, name));
 }
 
 /// Writes the R, G and B of a frame as the PNG that render's --preview is: the very one where they are floats. Throws
@@ -90,7 +92,7 @@ const std::vector<float>& channel(const LayeredPicture& frame, const char* name,
 /// space; file where it cannot be written.
 void write_merged_preview(const std::string& path, const LayeredPicture& frame, const PictureView& view) {
     const auto refuse = [&](const char* what) {
-        throw Error(ExitCode::usage, fmt::format("--preview {}: {}; render-view shows the merged file", path, what));
+        throw Error(ErrorKind::usage, fmt::format("--preview {}: {}; cistula view shows the merged file", path, what));
     };
     if (frame.attributes.count("cistula:background") != 0) refuse("the tiles' background was left out");
     const auto* id = attribute_of<std::string>(frame, "colorInteropID");

@@ -5,5 +5,5 @@
 int main(int argc, char** argv) {
     using namespace cistula;
     return run_program("render-verify", "--quick and fewer cases need less",
-                       [&] { return verify::verify_program(argc, argv, verify::all_cases()); });
+                       [&] { return verify::verify_program(argc, argv); });
 }

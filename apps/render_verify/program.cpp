@@ -1,17 +1,17 @@
 #include "apps/render_verify/program.h"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "apps/common/command_line.h"
+#include "apps/common/interrupt.h"
 #include "apps/common/step_progress.h"
-#include "apps/render_verify/report.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/suggest.h"
 #include "sequence/backends.h"
 #include "sequence/run_files.h"
 
@@ -22,27 +22,24 @@ enum class Action { run, list, print_version };
 
 struct VerifyOptions {
     Action action = Action::run;
-    RunSettings settings;
-    std::vector<std::string> cases;  // as --case gives them; none: all
-    std::string json, html;          // files; empty: none
+    Options settings;
+    std::string json, html;  // files; empty: none
 };
 
 void declare(CLI::App& app, VerifyOptions& options) {
-    RunSettings& settings = options.settings;
+    Options& settings = options.settings;
     using Kinds = std::vector<IntersectorKind>;
-    const Kinds host{IntersectorKind::embree, IntersectorKind::lanes, IntersectorKind::bvh, IntersectorKind::brute};
-    Kinds all = host;
+    Kinds all = host_intersectors;
     all.push_back(IntersectorKind::cuda);
-    settings.intersectors = host;
-    settings.precisions = {Precision::single_, Precision::double_};
     add_option(app, "--backend", "NAME", "embree (the CPU: embree, lanes, bvh, brute), cuda (a GPU) or all; embree",
-               read_choice(settings.intersectors, {{"embree", host}, {"cuda", {IntersectorKind::cuda}}, {"all", all}}));
+               read_choice(settings.intersectors,
+                           {{"embree", host_intersectors}, {"cuda", Kinds{IntersectorKind::cuda}}, {"all", all}}));
     add_option(app, "--precision", "NAME", "float, double or both; both",
                read_choice(
                    settings.precisions,
                    {{"float", {Precision::single_}}, {"double", {Precision::double_}}, {"both", settings.precisions}}));
     app.add_option(
-           "--case", options.cases,
+           "--case", settings.cases,
            "only this case, those whose names begin so, or those that a pattern with * and ? fits; may be given "
            "several times")
         ->type_name("NAME")
@@ -62,37 +59,16 @@ void declare(CLI::App& app, VerifyOptions& options) {
     app.set_help_flag("-h,--help", "print this and exit");
 }
 
-bool fits(const std::string& wanted, const std::string& name) {
-    if (wanted.find_first_of("*?") != std::string::npos) return fnmatch(wanted.c_str(), name.c_str(), 0) == 0;
-    return name.compare(0, wanted.size(), wanted) == 0;
+size_t widest(const std::vector<CaseName>& cases) {
+    size_t width = 4;
+    for (const CaseName& one : cases) width = std::max(width, one.name.size());
+    return width;
 }
 
-std::vector<const Case*> chosen_cases(const std::vector<std::string>& wanted, const std::vector<Case>& cases) {
-    std::vector<bool> taken(cases.size(), wanted.empty());
-    for (const std::string& text : wanted) {
-        bool any = false;
-        for (size_t i = 0; i < cases.size() && !any; ++i)
-            if (cases[i].name == text)
-                any = taken[i] = true;  // an exact name is chosen even if it is a prefix of others
-        for (size_t i = 0; i < cases.size() && !any; ++i)
-            if (fits(text, cases[i].name)) taken[i] = true;
-        for (size_t i = 0; i < cases.size(); ++i) any = any || fits(text, cases[i].name);
-        if (any) continue;
-        std::vector<std::string_view> names;
-        for (const Case& one : cases) names.push_back(one.name);
-        const std::string near = suggestion(text, names, "cases");
-        fail_usage(fmt::format("--case {}: there is no such case; {}--list names them all", text,
-                               near.rfind("did you", 0) == 0 ? near + "; " : ""));
-    }
-    std::vector<const Case*> chosen;
-    for (size_t i = 0; i < cases.size(); ++i)
-        if (taken[i]) chosen.push_back(&cases[i]);
-    return chosen;
-}
-
-int run(const VerifyOptions& options, const std::vector<const Case*>& cases) {
-    RunContext context{options.settings.quick};
-    if (options.settings.intersectors.back() == IntersectorKind::cuda) {
+int run(const VerifyOptions& options, const std::vector<CaseName>& cases) {
+    const Options& settings = options.settings;
+    RunContext context{settings.quick};
+    if (settings.intersectors.back() == IntersectorKind::cuda) {
         const ChosenDevices devices = choose_devices(Backend::cuda, {});
         context.devices = devices.names;
         context.driver = devices.driver;
@@ -101,29 +77,40 @@ int run(const VerifyOptions& options, const std::vector<const Case*>& cases) {
     for (const std::string& file : {options.json, options.html})
         if (!file.empty()) AtomicFile probe(file);
     const auto start = std::chrono::steady_clock::now();
-    print(table_head(cases));
-    const std::vector<Outcome> outcomes = [&] {
+    const size_t width = widest(cases);
+    const std::vector<Row> rows = [&] {
         StepProgress progress(ProgressStyle::automatic);
-        return run_cases(cases, options.settings, progress,
-                         [&](const Outcome& outcome) { progress.aside([&] { print(table_row(outcome, cases)); }); });
+        InterruptGuard guard;
+        guard.watch(progress.render.stop);
+        print(table_head(width));
+        progress.begin("cases", static_cast<double>(cases.size() * settings.precisions.size()));
+        Options with_events = settings;
+        bool first = true;
+        with_events.begun = [&](const std::string& name) {
+            if (!std::exchange(first, false)) progress.advance();
+            progress.name_part(name);
+        };
+        with_events.finished = [&](const Row& row) { progress.aside([&] { print(table_row(row, width)); }); };
+        return verify::run(with_events, progress.render);
     }();
     context.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    print(summary(outcomes));
+    print(summary(rows));
     if (!options.json.empty())
         write_file_atomically(
             options.json,
-            report_json(outcomes, context).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-    if (!options.html.empty()) write_file_atomically(options.html, report_html(outcomes, context));
-    bool hold = !outcomes.empty();
-    for (const Outcome& outcome : outcomes) hold = hold && outcome.holds();
+            report_json(rows, context).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (!options.html.empty()) write_file_atomically(options.html, report_html(rows, context));
+    const bool hold =
+        !rows.empty() && std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.holds(); });
     return static_cast<int>(hold ? ExitCode::done : ExitCode::failed);
 }
 
 }  // namespace
 
-int verify_program(int argc, const char* const* argv, const std::vector<Case>& cases) {
+int verify_program(int argc, const char* const* argv, const std::vector<Case>* table) {
     CLI::App app("Checks hard cases against closed forms, on every intersector of this machine.", "render-verify");
     VerifyOptions options;
+    options.settings.table = table;
     declare(app, options);
     app.footer(R"(
 Examples:
@@ -140,12 +127,14 @@ Exit codes: 0 all cases hold, 1 some do not, 2 command line, 3 file, 4 device.)"
     } else if (options.action == Action::print_version) {
         print("render-verify (Cistula) " CISTULA_VERSION "\n");
     } else {
-        const std::vector<const Case*> chosen = chosen_cases(options.cases, cases);
+        const std::vector<CaseName> cases = chosen_cases(options.settings);
         RunFiles files;
         files.writes(options.json, "--json");
         files.writes(options.html, "--html");
-        if (options.action == Action::run) return run(options, chosen);
-        print(list_text(cases));
+        if (options.action == Action::run) return run(options, cases);
+        std::string list;
+        for (const CaseName& one : cases) list += fmt::format("{:<{}}  {}\n", one.name, widest(cases), one.exact);
+        print(list);
     }
     return 0;
 }

@@ -10,7 +10,7 @@
 namespace cistula {
 
 [[noreturn]] inline void fail_cuda(cudaError_t error, const std::string& call) {
-    throw Error(ExitCode::device,
+    throw Error(ErrorKind::device,
                 "CUDA: " + call + ": " + cudaGetErrorString(error) + " (" + cudaGetErrorName(error) + ")");
 }
 

@@ -120,11 +120,12 @@ class CudaRenderer : public Renderer {
 
     static void require(const std::vector<CudaDevice>& known, int index) {
         if (index < 0 || size_t(index) >= known.size())
-            throw Error(ExitCode::device, fmt::format("--device {}: there is no such GPU; this machine has 0 to {}",
-                                                      index, known.size() - 1));
+            throw Error(ErrorKind::device, "there is no such GPU",
+                        fmt::format("this machine has 0 to {}", known.size() - 1))
+                .of("device", fmt::format("{}", index));
         if (!known[size_t(index)].obstacle.empty())
-            throw Error(ExitCode::device, fmt::format("--device {}: {}: {}", index, known[size_t(index)].name,
-                                                      known[size_t(index)].obstacle));
+            throw Error(ErrorKind::device, known[size_t(index)].name + ": " + known[size_t(index)].obstacle)
+                .of("device", fmt::format("{}", index));
     }
 
     /// Brings the scene to the devices in the form that a path needs.
@@ -202,11 +203,9 @@ class CudaRenderer : public Renderer {
         };
         while (!has_room()) {
             if (plan.part_strips == 1)
-                throw Error(
-                    ExitCode::device,
-                    fmt::format("the GPU has no memory for {} pixels at a time; a smaller --res or --crop needs "
-                                "less, or free memory that other programs hold",
-                                plan.strip_pixels));
+                throw Error(ErrorKind::device,
+                            fmt::format("the GPU has no memory for {} pixels at a time", plan.strip_pixels),
+                            "a smaller `resolution` or `crop` needs less, or free memory that other programs hold");
             divide(plan, (plan.part_strips + 1) / 2);
         }
         if (part_pixels(plan) == wanted) return;

@@ -11,11 +11,11 @@ namespace {
 
 [[noreturn]] void fail_no_device(cudaError_t error) {
     const char* advice =
-        "check that an NVIDIA GPU and its driver are installed (nvidia-smi); --backend embree renders on the CPU";
+        "check that an NVIDIA GPU and its driver are installed (nvidia-smi); `backend` embree renders on the CPU";
     if (error == cudaErrorInsufficientDriver || error == cudaErrorSystemDriverMismatch)
         advice =
-            "install an NVIDIA driver, or a newer one, for this version of CUDA; --backend embree renders on the CPU";
-    throw Error(ExitCode::device, fmt::format("no usable GPU: {}; {}", cudaGetErrorString(error), advice));
+            "install an NVIDIA driver, or a newer one, for this version of CUDA; `backend` embree renders on the CPU";
+    throw Error(ErrorKind::device, std::string("no usable GPU: ") + cudaGetErrorString(error), advice);
 }
 
 /// The compute capabilities that this build's kernels run on, such as "7.5 or later".
@@ -31,10 +31,9 @@ bool kernels_run_on_capability(int capability) {
 
 std::vector<CudaDevice> list_cuda_devices() {
     if (!CISTULA_EVERY_KERNEL)
-        throw Error(
-            ExitCode::device,
-            "this build has one kernel of many, to see that it compiles, and uses no GPU; make with CUDA=yes, or "
-            "CMake with -DCISTULA_EVERY_KERNEL=ON, builds all; --backend embree renders on the CPU");
+        throw Error(ErrorKind::device, "this build has one kernel of many, to see that it compiles, and uses no GPU",
+                    "make with CUDA=yes, or CMake with -DCISTULA_EVERY_KERNEL=ON, builds all; `backend` embree renders "
+                    "on the CPU");
     int count = 0;
     const cudaError_t error = cudaGetDeviceCount(&count);
     if (error != cudaSuccess) fail_no_device(error);

@@ -121,7 +121,7 @@ void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& sc
     if (path == DevicePath::tree)
         launch.template operator()<DevicePath::tree>(scene.view);
     else if constexpr (mask == layered_mask)
-        throw Error(ExitCode::failed, "internal error: layers need the tree");
+        throw Error(ErrorKind::failed, "internal error: layers need the tree");
     else
         launch.template operator()<DevicePath::plain_loop>(scene.constant);
 }

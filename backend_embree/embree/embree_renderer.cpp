@@ -45,8 +45,9 @@ class EmbreeRenderer : public Renderer {
                                         [&](auto questions, auto shares) { queries.segments(questions, shares); });
         });
     }
-    PixelTree pixel_tree(const CameraFrame& camera, const FrameSettings& settings, int x, int y) override {
-        return embree_pixel_tree<Real>(*scene_, {view_, tree()}, *this, camera, settings, x, y);
+    PixelTree pixel_tree(const CameraFrame& camera, const FrameSettings& settings, int x, int y,
+                         const PixelTreeLimits& limits) override {
+        return embree_pixel_tree<Real>(*scene_, {view_, tree()}, *this, camera, settings, x, y, limits);
     }
     uint32_t effects() const override { return effects_; }
     int lanes() const override { return lanes_; }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "backend_embree/host/frame_loop.h"
+#include "scene/trees/embree_handles.h"
 
 namespace cistula {
 
@@ -51,5 +52,19 @@ void EmbreeTree<Real>::build(const SceneView<Real>& scene, const EmbreeOptions& 
 
 template class EmbreeTree<float>;
 template class EmbreeTree<double>;
+
+EmbreeDevice::EmbreeDevice(const std::string& config) : device_(make_embree_device(config)) {
+    rtcSetDeviceMemoryMonitorFunction(
+        device_.get(),
+        [](void* self, ssize_t bytes, bool) {
+            static_cast<EmbreeDevice*>(self)->memory_ += bytes;
+            return true;
+        },
+        this);
+}
+
+void EmbreeDevice::check(const char* doing) const {
+    check_embree(device_.get(), doing);
+}
 
 }  // namespace cistula

@@ -100,7 +100,7 @@ class FrameTask {
                                   : find_camera_solids(scene_, intersector, frame_)))
             film.flags |= flag_media_overflow;
         if (settings.layers.any() && !fills_film_layers<Intersector>)
-            throw Error(ExitCode::usage, "this intersector has no layers");
+            throw Error(ErrorKind::usage, "this intersector has no layers");
         if (in_lanes != nullptr && camera_fits_lanes()) tiles_ = tile_functions(*in_lanes, settings.lanes);
         mask_ = mask_to_run(compiled.effects, settings, frame_);
         if (mask_ != layered_mask) mask_ = tiles_ != nullptr ? std::max(mask_, least_lane_mask) : limited_mask;

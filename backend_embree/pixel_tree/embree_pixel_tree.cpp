@@ -46,11 +46,11 @@ bool adds_up(const PixelTree& tree) {
 
 template <class Real>
 PixelTree embree_pixel_tree(const CompiledScene<Real>& scene, const EmbreeIntersector<Real>& intersector,
-                            Renderer& renderer, const CameraFrame& camera, const FrameSettings& settings, int x,
-                            int y) {
+                            Renderer& renderer, const CameraFrame& camera, const FrameSettings& settings, int x, int y,
+                            const PixelTreeLimits& limits) {
     const DefaultRounding rounding;
     uint32_t flags = 0;
-    PixelTree pixel = record_pixel(scene, intersector.scene, intersector, camera, settings, x, y, flags);
+    PixelTree pixel = record_pixel(scene, intersector.scene, intersector, camera, settings, x, y, limits, flags);
     FrameSettings alone = settings;
     alone.crop = {x, y, 1, 1};
     alone.parts = {};
@@ -64,8 +64,8 @@ PixelTree embree_pixel_tree(const CompiledScene<Real>& scene, const EmbreeInters
 }
 
 template PixelTree embree_pixel_tree(const CompiledScene<float>&, const EmbreeIntersector<float>&, Renderer&,
-                                     const CameraFrame&, const FrameSettings&, int, int);
+                                     const CameraFrame&, const FrameSettings&, int, int, const PixelTreeLimits&);
 template PixelTree embree_pixel_tree(const CompiledScene<double>&, const EmbreeIntersector<double>&, Renderer&,
-                                     const CameraFrame&, const FrameSettings&, int, int);
+                                     const CameraFrame&, const FrameSettings&, int, int, const PixelTreeLimits&);
 
 }  // namespace cistula

@@ -13,6 +13,7 @@ namespace cistula {
 /// Renderer::pixel_tree() of `renderer`, which renders the same scene on the CPU.
 template <class Real>
 PixelTree embree_pixel_tree(const CompiledScene<Real>& scene, const EmbreeIntersector<Real>& intersector,
-                            Renderer& renderer, const CameraFrame& camera, const FrameSettings& settings, int x, int y);
+                            Renderer& renderer, const CameraFrame& camera, const FrameSettings& settings, int x, int y,
+                            const PixelTreeLimits& limits);
 
 }  // namespace cistula

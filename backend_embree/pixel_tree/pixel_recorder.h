@@ -13,8 +13,8 @@ template <class Real, class Intersector>
 class SampleRecorder {
   public:
     SampleRecorder(const BranchReader<Real, Intersector>& reader, const PixelRecord& record, const PixelWork& work,
-                   SampleTree& tree)
-        : reader_(reader), record_(record), work_(work), tree_(tree) {
+                   const PixelTreeLimits& limits, SampleTree& tree)
+        : reader_(reader), record_(record), work_(work), limits_(limits), tree_(tree) {
         tree_.branches.emplace_back();
     }
 
@@ -24,8 +24,12 @@ class SampleRecorder {
     }
     void pushed(const Branch<Real>& branch, bool fits) { trace_.pushed.push_back({branch, fits}); }
 
-    /// Ends the current branch.
+    /// Ends the current branch. Throws Error where the limits are reached.
     void finish() {
+        limits_.stop.check();
+        if (tree_.branches.size() > limits_.branches)
+            throw Error(ErrorKind::failed, "the pixel's rays branch too often to be followed one by one",
+                        "a smaller `depth` or `supersample`, or a larger `cutoff`, leaves fewer");
         trace_.end = Sums::of(record_);
         trace_.flags = work_.flags;
         trace_.start = current_ == 0 ? work_.start : 0;
@@ -46,6 +50,7 @@ class SampleRecorder {
     const BranchReader<Real, Intersector>& reader_;
     const PixelRecord& record_;
     const PixelWork& work_;
+    const PixelTreeLimits& limits_;  // of this sample
     SampleTree& tree_;
     BranchTrace<Real> trace_;
     std::vector<uint32_t> waiting_;  // nodes of the branches on the stack
@@ -113,13 +118,13 @@ inline void sum_up(std::vector<PixelBranch>& branches) {
 template <class Real, class Intersector>
 bool record_sample(const BranchReader<Real, Intersector>& reader, const SceneView<Real>& scene,
                    const Intersector& intersector, const FrameView& frame, int x, int y, int sample,
-                   const TreeThreshold& threshold, SampleTree& tree, uint32_t& flags) {
+                   const TreeThreshold& threshold, const PixelTreeLimits& limits, SampleTree& tree, uint32_t& flags) {
     const GridSample place = grid_sample(sample, frame.supersample);
     tree = SampleTree();
     tree.row = place.row;
     tree.column = place.column;
     PixelWork work;
-    SampleRecorder<Real, Intersector> recorder(reader, tree.record, work, tree);
+    SampleRecorder<Real, Intersector> recorder(reader, tree.record, work, limits, tree);
     const ObservedIntersector<Real, Intersector> observed{intersector, recorder};
     ObservedStack<Real, Intersector> stack(recorder);
     const PixelTask<BranchEffects, ObservedIntersector<Real, Intersector>, ObservedStack<Real, Intersector>> task{
@@ -143,17 +148,19 @@ bool record_sample(const BranchReader<Real, Intersector>& reader, const SceneVie
 template <class Real, class Intersector>
 PixelTree record_pixel(const CompiledScene<Real>& compiled, const SceneView<Real>& scene,
                        const Intersector& intersector, const CameraFrame& camera, const FrameSettings& settings, int x,
-                       int y, uint32_t& flags) {
+                       int y, const PixelTreeLimits& limits, uint32_t& flags) {
     FrameView frame = frame_view(compiled, camera, settings);
     if (!find_camera_solids(scene, intersector, frame)) flags |= flag_media_overflow;
     const BranchReader<Real, Intersector> reader(compiled, scene, intersector, frame);
     PixelTree pixel;
+    PixelTreeLimits left = limits;
     for (int sample = 0; sample < settings.supersample * settings.supersample; ++sample) {
         TreeThreshold threshold{frame.tree.threshold};
         SampleTree tree;
-        while (!record_sample(reader, scene, intersector, frame, x, y, sample, threshold, tree, flags))
+        while (!record_sample(reader, scene, intersector, frame, x, y, sample, threshold, left, tree, flags))
             threshold.shrink();
         tree.branches.front().origin = camera.camera.position;
+        left.branches -= std::min(left.branches, tree.branches.size());
         pixel.samples.push_back(std::move(tree));
     }
     return pixel;

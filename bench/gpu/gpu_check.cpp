@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
+#include "apps/common/command_line.h"
 #include "backend_cuda/host/cuda_renderer.h"
-#include "base/error.h"
 #include "bench/gpu/frame_times.h"
 #include "testing/parity/function_parity.h"
 #include "testing/parity/image_parity.h"
@@ -16,8 +16,11 @@ namespace {
 
 struct Options {
     std::string folder = ".", json;
-    uint64_t functions = 0, generated = 0;
-    bool scenes = false, times = false, devices = false;
+    uint64_t functions = 0;
+    uint64_t generated = 0;
+    bool scenes = false;
+    bool times = false;
+    bool devices = false;
     int runs = 20;
 };
 
@@ -60,7 +63,7 @@ int main(int argc, char** argv) {
         return bench::run(options);
     } catch (const Error& error) {
         std::fprintf(stderr, "gpu_check: %s\n", error.what());
-        return int(error.code());
+        return int(exit_code(error.kind()));
     } catch (const std::exception& error) {
         std::fprintf(stderr, "gpu_check: %s\n", error.what());
         return int(ExitCode::failed);

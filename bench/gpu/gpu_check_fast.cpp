@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
+#include "apps/common/command_line.h"
 #include "backend_cuda/host/cuda_renderer.h"
-#include "base/error.h"
 #include "bench/gpu/frame_times.h"
 
 int main(int argc, char** argv) {
@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
         return int(ExitCode::done);
     } catch (const Error& error) {
         std::fprintf(stderr, "gpu_check_fast: %s\n", error.what());
-        return int(error.code());
+        return int(exit_code(error.kind()));
     } catch (const std::exception& error) {
         std::fprintf(stderr, "gpu_check_fast: %s\n", error.what());
         return int(ExitCode::failed);

@@ -6,4 +6,4 @@ _cistula() {
     mapfile -t COMPREPLY < <(compgen -W "$("${command[@]}" --help 2>/dev/null |
         sed -nE 's/^ +(-[a-zA-Z])?,? *(--[a-z-]+)?([ =,].*)?$/\1 \2/p')" -- "$word")
 }
-complete -o default -F _cistula render render-compare render-view render-verify render-report render-merge render-farm
+complete -o default -F _cistula render render-compare render-verify render-merge

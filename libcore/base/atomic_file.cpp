@@ -83,7 +83,8 @@ void AtomicFile::find_target() {
         if (fstat(replaced.number, &status) != 0) throw file_error(path_, "write", errno);
         if (S_ISDIR(status.st_mode)) throw file_error(path_, "write", EISDIR);
         if (!S_ISREG(status.st_mode))
-            throw file_error(path_, "write", std::string("it is a device or a pipe; give the name of a regular file"));
+            throw file_error(path_, "write", std::string("it is a device or a pipe"),
+                             "give the name of a regular file");
         permissions_ = static_cast<int>(status.st_mode & 0777);
         std::error_code failure;
         if (is_link) target = fs::canonical(target, failure);
@@ -91,9 +92,8 @@ void AtomicFile::find_target() {
     } else if (reason != ENOENT) {
         throw file_error(path_, "write", reason);
     } else if (is_link) {
-        throw file_error(path_, "write",
-                         std::string("it is a symbolic link to a file that does not exist; remove the link or give "
-                                     "another name"));
+        throw file_error(path_, "write", std::string("it is a symbolic link to a file that does not exist"),
+                         "remove the link or give another name");
     }
     name_ = target.filename().string();
     if (name_.empty()) throw file_error(path_, "write", EISDIR);
@@ -102,7 +102,7 @@ void AtomicFile::find_target() {
     if (directory_.number < 0) throw file_error(path_, "write", errno);
     if (replaced.number >= 0 &&
         (fstatat(directory_.number, name_.c_str(), &link, AT_SYMLINK_NOFOLLOW) != 0 || !is_same(link, status)))
-        throw file_error(path_, "write", std::string("it was replaced by another file meanwhile; run it again"));
+        throw file_error(path_, "write", std::string("it was replaced by another file meanwhile"), "run it again");
 }
 
 /// What the names of the target's temporaries begin with.

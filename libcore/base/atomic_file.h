@@ -17,7 +17,7 @@ namespace cistula {
 class AtomicFile {
   public:
     /// Creates the temporary, empty, with the permissions of the file that it will replace, but not its set-user-ID,
-    /// set-group-ID and sticky bits. Throws Error(ExitCode::file) with the system's reason.
+    /// set-group-ID and sticky bits. Throws Error (file) with the system's reason.
     explicit AtomicFile(const std::string& path);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -29,10 +29,10 @@ class AtomicFile {
     /// The temporary, open for writing. It stays this object's.
     int descriptor() const { return descriptor_; }
 
-    /// Appends to the temporary. Throws Error(ExitCode::file).
+    /// Appends to the temporary. Throws Error (file).
     void write(std::string_view bytes);
 
-    /// Flushes the bytes to the disk and renames the temporary to the target. Throws Error(ExitCode::file).
+    /// Flushes the bytes to the disk and renames the temporary to the target. Throws Error (file).
     void commit();
 
     /// Removes the temporaries of a target that processes that died left behind. Throws as the constructor does.
@@ -60,7 +60,7 @@ class AtomicFile {
     int descriptor_ = -1;
 };
 
-/// Replaces the file by these bytes, or leaves it unchanged and throws Error(ExitCode::file).
+/// Replaces the file by these bytes, or leaves it unchanged and throws Error (file).
 void write_file_atomically(const std::string& path, std::string_view bytes);
 
 }  // namespace cistula

@@ -25,25 +25,25 @@ std::string remedy(const std::string& path, const std::string& verb, int error_n
     const bool writes = verb == "write";
     switch (error_number) {
         case ENOENT:
-            if (!writes) return "; check the spelling";
-            return directory.empty() ? "; give a file name"
-                                     : "; create the directory " + directory + " first, or give another";
+            if (!writes) return "check the spelling";
+            return directory.empty() ? "give a file name"
+                                     : "create the directory " + directory + " first, or give another";
         case ENOTDIR:
-            return "; " + directory + " is not a directory, give another";
+            return directory + " is not a directory, give another";
         case EISDIR:
-            return "; give the name of a file in it";
+            return "give the name of a file in it";
         case EACCES:
         case EPERM:
-            return writes ? "; give a place that you may write to" : "; ask for the right to read it";
+            return writes ? "give a place that you may write to" : "ask for the right to read it";
         case EROFS:
-            return "; give a place that can be written to";
+            return "give a place that can be written to";
         case ENOSPC:
         case EDQUOT:
-            return "; free some space, or give a place on another disk";
+            return "free some space, or give a place on another disk";
         case EFBIG:
-            return "; raise the limit on file sizes (ulimit -f), or give a place on another disk";
+            return "raise the limit on file sizes (ulimit -f), or give a place on another disk";
         case ENAMETOOLONG:
-            return "; give a shorter name";
+            return "give a shorter name";
         default:
             return "";
     }
@@ -51,14 +51,14 @@ std::string remedy(const std::string& path, const std::string& verb, int error_n
 
 FileHandle open_for_reading(const std::string& path) {
     if (path.find('\0') != std::string::npos)  // the system would open what is before it
-        throw Error(ExitCode::file, path + ": cannot read: a zero byte is in the name; check the spelling");
+        throw Error(ErrorKind::file, "cannot read: a zero byte is in the name", "check the spelling").at(path);
     FileHandle file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file) throw file_error(path, "read", errno);
     struct stat status;
     if (fstat(fileno(file.get()), &status) != 0) throw file_error(path, "read", errno);
     if (S_ISDIR(status.st_mode)) throw file_error(path, "read", EISDIR);
     if (S_ISCHR(status.st_mode))  // such as /dev/zero, which has no end
-        throw file_error(path, "read", std::string("it is a device; give the name of a file"));
+        throw file_error(path, "read", std::string("it is a device"), "give the name of a file");
     return file;
 }
 
@@ -80,18 +80,19 @@ std::string read_up_to(const std::string& path, size_t most) {
         if (got < step) break;
     }
     if (!has_size && bytes.size() > largest_pipe)
-        throw file_error(path, "read", std::string("it is a pipe of more than 1 GiB; write it to a file first"));
+        throw file_error(path, "read", std::string("it is a pipe of more than 1 GiB"), "write it to a file first");
     return bytes;
 }
 
 }  // namespace
 
 Error file_error(const std::string& path, const std::string& verb, int error_number) {
-    return Error(ExitCode::file, path + ": cannot " + verb + ": " + std::generic_category().message(error_number) +
-                                     remedy(path, verb, error_number));
+    return Error(ErrorKind::file, "cannot " + verb + ": " + std::generic_category().message(error_number),
+                 remedy(path, verb, error_number))
+        .at(path);
 }
 
-Error file_error(const std::string& path, const std::string& verb, const std::string& reason) {
+Error file_error(const std::string& path, const std::string& verb, const std::string& reason, const char* remedy) {
     std::string line;
     for (const char c : reason) {
         const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
@@ -101,7 +102,7 @@ Error file_error(const std::string& path, const std::string& verb, const std::st
             line += ' ';
     }
     while (!line.empty() && (line.back() == ' ' || line.back() == '.')) line.pop_back();
-    return Error(ExitCode::file, path + ": cannot " + verb + ": " + line);
+    return Error(ErrorKind::file, "cannot " + verb + ": " + line, remedy).at(path);
 }
 
 uint64_t regular_file_size(const std::string& path) {
@@ -109,13 +110,16 @@ uint64_t regular_file_size(const std::string& path) {
     if (stat(path.c_str(), &status) != 0) throw file_error(path, "read", errno);
     if (S_ISDIR(status.st_mode)) throw file_error(path, "read", EISDIR);
     if (!S_ISREG(status.st_mode))
-        throw file_error(path, "read", std::string("it is a pipe, a socket or a device; give a file"));
+        throw file_error(path, "read", std::string("it is a pipe, a socket or a device"), "give a file");
     return static_cast<uint64_t>(status.st_size);
 }
 
 void check_readable(const std::string& path) {
     regular_file_size(path);  // before it is opened
-    open_for_reading(path);
+    constexpr std::string_view pointer = "version https://git-lfs.github.com/spec/";
+    if (read_file_start(path, pointer.size()) == pointer)
+        throw file_error(path, "read",
+                         std::string("it is a pointer of Git LFS, not the file; git lfs pull brings that"));
 }
 
 std::string read_file(const std::string& path) {

@@ -15,20 +15,20 @@ inline constexpr int64_t largest_picture_side = 65536;
 /// spelling". verb: "read" or "write".
 Error file_error(const std::string& path, const std::string& verb, int error_number);
 
-/// An error with a library's reason, line breaks removed: "PATH: cannot read: REASON".
-Error file_error(const std::string& path, const std::string& verb, const std::string& reason);
+/// An error with a library's reason, line breaks removed: "PATH: cannot read: REASON; REMEDY".
+Error file_error(const std::string& path, const std::string& verb, const std::string& reason, const char* remedy = "");
 
-/// The size in bytes of a file; throws Error(ExitCode::file) if there is none, or it is a directory, a pipe or a
+/// The size in bytes of a file; throws Error (file) if there is none, or it is a directory, a pipe or a
 /// device. It is not opened, which waits for a writer where it is a pipe.
 uint64_t regular_file_size(const std::string& path);
 
-/// Throws Error(ExitCode::file) unless `path` is a regular file that can be opened.
+/// Throws Error (file) unless `path` is a regular file that can be opened, and not a Git LFS pointer to one.
 void check_readable(const std::string& path);
 
-/// All bytes of a file. Throws Error(ExitCode::file).
+/// All bytes of a file. Throws Error (file).
 std::string read_file(const std::string& path);
 
-/// The first `count` bytes, fewer where the file is shorter. Throws Error(ExitCode::file).
+/// The first `count` bytes, fewer where the file is shorter. Throws Error (file).
 std::string read_file_start(const std::string& path, size_t count);
 
 /// The extension in lower case with its dot: ".exr" for "a/b.EXR"; empty if there is none.

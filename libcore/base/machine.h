@@ -1,6 +1,7 @@
-// Names of the machine's parts, and facts about the build, for records.
+// Names of the machine's parts, facts about the build, for records; the memory that a process may use.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace cistula {
@@ -22,5 +23,15 @@ const char* build_flags();
 
 /// `git describe --always --dirty` of the source tree when the build was configured; "unknown" outside a git tree.
 const char* build_commit();
+
+/// Bytes of memory that this process can have at most: the machine's, or less where a control group (cgroup v1 and v2)
+/// or `ulimit -v` says so.
+uint64_t machine_memory();
+
+/// Bytes of address space that this process uses.
+uint64_t address_space();
+
+/// Bytes of address space that `ulimit -v` leaves this process; the largest number where there is no such limit.
+uint64_t address_space_left();
 
 }  // namespace cistula

@@ -1,4 +1,4 @@
-#include "base/machine_memory.h"
+#include "base/machine.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -32,9 +32,11 @@ uint64_t machine_memory() {
         most = std::min<uint64_t>(most, limit.rlim_cur);
     std::ifstream groups("/proc/self/cgroup");  // lines NUMBER:CONTROLLERS:GROUP; version 2 has no controllers
     for (std::string line; std::getline(groups, line);) {
-        const size_t first = line.find(':'), second = line.find(':', first + 1);
+        const size_t first = line.find(':');
+        const size_t second = line.find(':', first + 1);
         if (first == line.npos || second == line.npos) continue;
-        const std::string controllers = line.substr(first + 1, second - first - 1), group = line.substr(second + 1);
+        const std::string controllers = line.substr(first + 1, second - first - 1);
+        const std::string group = line.substr(second + 1);
         if (controllers.empty())
             most = least_limit("/sys/fs/cgroup", group, "memory.max", most);
         else if (controllers == "memory")

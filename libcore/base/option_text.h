@@ -3,7 +3,6 @@
 #pragma once
 
 #include <charconv>
-#include <exception>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,8 +13,8 @@
 
 namespace cistula {
 
-/// Throws Error (usage) with this message.
-[[noreturn]] void fail_usage(const std::string& message);
+/// Throws Error (usage).
+[[noreturn]] void fail_usage(std::string_view problem, std::string_view remedy = {});
 
 /// The whole of `text` as a number of type T; nothing if it is not one.
 template <class T>
@@ -48,14 +47,5 @@ T chosen(const std::string& text, const std::vector<std::pair<std::string_view, 
     }
     fail_choice(text, names);
 }
-
-/// What is told of an error that ends a program.
-struct Failure {
-    std::string text;  // without the program's name
-    ExitCode code;
-};
-
-/// An exception as it is told: where memory ran out or a thread could not be started, that, and `memory_advice`.
-Failure failure_of(const std::exception& error, const std::string& memory_advice);
 
 }  // namespace cistula

@@ -9,7 +9,8 @@ namespace cistula {
 
 PixelRect intersection(const PixelRect& a, const PixelRect& b) {
     const auto end = [](int start, int size) { return static_cast<int64_t>(start) + size; };
-    const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+    const int x = std::max(a.x, b.x);
+    const int y = std::max(a.y, b.y);
     const int64_t width = std::min(end(a.x, a.width), end(b.x, b.width)) - x;
     const int64_t height = std::min(end(a.y, a.height), end(b.y, b.height)) - y;
     if (width <= 0 || height <= 0) return {x, y, 0, 0};

@@ -8,7 +8,10 @@ namespace cistula {
 
 /// A rectangle of pixels; (0, 0) is the top left of the full frame, or of a file's pixel space.
 struct PixelRect {
-    int x = 0, y = 0, width = 0, height = 0;
+    int x = 0;
+    int y = 0;
+    int width = 0;
+    int height = 0;
 
     bool is_empty() const { return width <= 0 || height <= 0; }
     size_t pixels() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }

@@ -32,10 +32,12 @@ Character first_character(std::string_view text) {
     return {code, length, true};
 }
 
-/// Whether a character beyond ASCII controls a terminal, ends a line, or changes the direction of writing.
+/// Whether a character beyond ASCII controls a terminal, ends a line, changes the direction of writing, or is none of
+/// XML's.
 bool is_control(uint32_t code) {
     return (code >= 0x80 && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f ||
-           (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069) || code == 0xfeff;
+           (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069) || code == 0xfeff ||
+           (code & 0xfffe) == 0xfffe;
 }
 
 std::string shown(const Character& character, std::string_view bytes) {
@@ -59,7 +61,8 @@ bool is_utf8(std::string_view text) {
 }
 
 std::string utf8_name(std::string_view text) {
-    constexpr std::string_view digits = "0123456789ABCDEF", digits_of_bytes = digits.substr(8);
+    constexpr std::string_view digits = "0123456789ABCDEF";
+    constexpr std::string_view digits_of_bytes = digits.substr(8);
     std::string name;
     while (!text.empty()) {
         const Character character = first_character(text);
@@ -91,7 +94,8 @@ std::string first_characters(std::string_view text, size_t most) {
 }
 
 std::string quoted(std::string_view word) {
-    constexpr size_t longest = 40, bytes_of_a_character = 4;
+    constexpr size_t longest = 40;
+    constexpr size_t bytes_of_a_character = 4;
     const std::string start = first_characters(word, longest);
     const bool is_whole = word.size() <= longest * bytes_of_a_character && start == first_characters(word, longest + 1);
     return fmt::format("'{}{}'", start, is_whole ? "" : "...");

@@ -10,7 +10,8 @@
 namespace cistula {
 
 struct PictureSize {
-    int width = 0, height = 0;
+    int width = 0;
+    int height = 0;
 };
 
 inline constexpr int largest_side = 65536;  // pixels
@@ -23,7 +24,8 @@ PixelRect parse_crop(std::string_view text);
 
 /// A grid of tiles over the pixels of a frame. They are numbered from 0, row by row from the top left.
 struct TileGrid {
-    int columns = 1, rows = 1;
+    int columns = 1;
+    int rows = 1;
 
     int count() const { return columns * rows; }
     bool operator==(const TileGrid&) const = default;

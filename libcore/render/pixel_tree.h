@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "base/error.h"
 #include "cistula/geometry/hit.h"
 #include "render/record/film.h"
 
@@ -57,7 +59,8 @@ struct PixelSurface : FaceMet {
     std::vector<uint32_t> before, beyond;      // solids around the point on either side, highest priority first
     double index_before = 1, index_beyond = 1;
     double cosine = 1;  // of the angle between ray and normal
-    bool bends = false, total = false;
+    bool bends = false;
+    bool total = false;
     double bent_cosine = 1;          // the cosine on the other side, where the ray is refracted
     double fresnel = -1;             // reflectance; -1: not evaluated
     double local = 0, mirrored = 0;  // shares
@@ -84,10 +87,17 @@ struct PixelBranch {
 };
 
 struct SampleTree {
-    int row = 0, column = 0;
+    int row = 0;
+    int column = 0;
     std::vector<PixelBranch> branches;  // the primary ray first, children after their parents
     PixelRecord record;
     PixelRays rays;
+};
+
+/// What bounds the work on a pixel's trees.
+struct PixelTreeLimits {
+    size_t branches = size_t{1} << 18;  // of all samples; some 1 KB each
+    StopSignal stop = {};
 };
 
 struct PixelTree {

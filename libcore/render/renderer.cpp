@@ -15,15 +15,15 @@
 namespace cistula {
 
 RayHits Renderer::intersect(std::span<const glm::dvec3>, std::span<const glm::dvec3>) {
-    throw Error(ExitCode::usage, intersector() + ": this renderer tells nothing of rays");
+    throw Error(ErrorKind::usage, intersector() + ": this renderer tells nothing of rays");
 }
 
 std::vector<glm::dvec3> Renderer::transmittance(std::span<const glm::dvec3>, std::span<const glm::dvec3>) {
-    throw Error(ExitCode::usage, intersector() + ": this renderer tells nothing of rays");
+    throw Error(ErrorKind::usage, intersector() + ": this renderer tells nothing of rays");
 }
 
-PixelTree Renderer::pixel_tree(const CameraFrame&, const FrameSettings&, int, int) {
-    throw Error(ExitCode::usage, intersector() + ": the trees of pixels are told by the renderer of the CPU");
+PixelTree Renderer::pixel_tree(const CameraFrame&, const FrameSettings&, int, int, const PixelTreeLimits&) {
+    throw Error(ErrorKind::usage, intersector() + ": the trees of pixels are told by the renderer of the CPU");
 }
 
 namespace {
@@ -70,6 +70,15 @@ std::string describe_flags(uint32_t flags, const SceneDescription& scene) {
     if (flags & flag_too_many_crossings) parts.push_back("a straight ray crossed more faces than the limit");
     if (flags & flag_objects_overflow) parts.push_back("a pixel showed more objects than its table holds");
     return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+FrameSettings frame_settings(const SceneDescription& scene) {
+    FrameSettings settings;
+    settings.set_size(scene.film.width, scene.film.height);
+    settings.supersample = scene.film.supersample;
+    settings.depth = scene.depth;
+    settings.cutoff = scene.cutoff;
+    return settings;
 }
 
 }  // namespace cistula

@@ -17,7 +17,8 @@
 namespace cistula {
 
 struct FrameSettings {
-    int full_width = 640, full_height = 480;
+    int full_width = 640;
+    int full_height = 480;
     PixelRect crop;       // the pixels to render; the whole frame: {0, 0, full_width, full_height}
     int supersample = 1;  // k: a k x k grid of samples per pixel
     int depth = 4;        // 1 to 1,024
@@ -46,6 +47,9 @@ struct FrameSettings {
     double truncation() const { return adaptive() ? target_error / 4 : cutoff; }
     KeptParts kept_parts() const { return adaptive() ? KeptParts() : parts; }
 };
+
+/// A scene's own settings: the size and the samples of its film, its depth and its cutoff, without a crop.
+FrameSettings frame_settings(const SceneDescription& scene);
 
 /// State shared between the rendering threads and an observer; all members may be read at any time.
 struct RenderProgress {
@@ -94,8 +98,10 @@ class Renderer {
     virtual std::vector<glm::dvec3> transmittance(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to);
 
     /// The ray trees of pixel (x, y) of the frame; settings.crop is ignored. Throws std::logic_error if the trees do
-    /// not give the renderer's result for that pixel bit for bit, and Error as a render does.
-    virtual PixelTree pixel_tree(const CameraFrame& camera, const FrameSettings& settings, int x, int y);
+    /// not give the renderer's result for that pixel bit for bit, and Error as a render does; `failed` where there are
+    /// more branches than the limits allow.
+    virtual PixelTree pixel_tree(const CameraFrame& camera, const FrameSettings& settings, int x, int y,
+                                 const PixelTreeLimits& limits = {});
 
     /// Announces a frame that is to be rendered after the next one and those announced before it, so that a device can
     /// start it early. A wrong announcement costs time and nothing else.

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/precision_choice.h"
 #include "scene/compile/scene_names.h"
 #include "scene/compile/scene_source.h"
+#include "scene/compile/solids/smallest_part.h"
 
 namespace cistula {
 

@@ -51,7 +51,7 @@ std::string describe_target(const TargetReport& all, uint64_t pixels, const Fram
         fmt::format("target error {:g} missed in {} of {} pixels: ", settings.target_error, all.missed, pixels);
     std::vector<std::string> reasons;
     if (all.truncated > all.bushy + all.coarse)
-        reasons.push_back(fmt::format("{} lose more than a quarter of it below depth {}; a larger --depth may reach it",
+        reasons.push_back(fmt::format("{} lose more than a quarter of it below depth {}; a larger `depth` may reach it",
                                       all.truncated - all.bushy - all.coarse, settings.depth));
     if (all.coarse != 0)
         reasons.push_back(
@@ -63,10 +63,10 @@ std::string describe_target(const TargetReport& all, uint64_t pixels, const Fram
                                       all.bushy, most_branches));
     if (all.undersampled != 0)
         reasons.push_back(
-            fmt::format("{} want more than {} samples; raise --max-samples", all.undersampled, settings.max_samples));
+            fmt::format("{} want more than {} samples; raise `max_samples`", all.undersampled, settings.max_samples));
     if (all.rounded != 0)
         reasons.push_back(fmt::format("{} have borders that rounding may move by more{}", all.rounded,
-                                      precision == Precision::single_ ? "; --precision double" : ""));
+                                      precision == Precision::single_ ? "; `precision` double" : ""));
     return fmt::format("{}{} ({})", text, fmt::join(reasons, "; "), known);
 }
 

@@ -18,13 +18,14 @@ std::string describe(const CudaDevice& device) {
                        device.multiprocessors);
 }
 
-[[noreturn]] void fail_device(const std::string& message) {
-    throw Error(ExitCode::device, message);
+[[noreturn]] void fail_device(const std::string& value, const std::string& problem, const std::string& remedy = {}) {
+    throw Error(ErrorKind::device, problem, remedy).of("device", value);
 }
 
 #if !CISTULA_HAS_CUDA
 [[noreturn]] void fail_without_cuda() {
-    fail_device("--backend cuda: this build has no CUDA backend; --backend embree renders on the CPU");
+    throw Error(ErrorKind::device, "this build has no CUDA backend", "`backend` embree renders on the CPU")
+        .of("backend", "cuda");
 }
 #endif
 
@@ -32,16 +33,16 @@ std::string describe(const CudaDevice& device) {
 
 DeviceChoice parse_devices(const std::string& text, Backend backend) {
     if (backend != Backend::cuda)
-        fail_usage(fmt::format("chooses GPUs, and --backend is {}; add --backend cuda or leave it out",
-                               backend_name(backend)));
+        fail_usage(fmt::format("chooses GPUs, and `backend` is {}", backend_name(backend)),
+                   "add `backend` cuda or leave it out");
     if (text == "all") return {true, {}};
     DeviceChoice choice{false, {}};
     for (const std::string_view part : parts_at_commas(text)) {
         const auto index = whole_number<int>(part);
         if (!index || *index < 0)
-            fail_usage("must be numbers of GPUs, as in 0 or 0,2, or all; render --list-devices shows them");
+            fail_usage("", "must be numbers of GPUs, as in 0 or 0,2, or all; render `list_devices` shows them");
         if (std::find(choice.indices.begin(), choice.indices.end(), *index) != choice.indices.end())
-            fail_usage(fmt::format("names GPU {} twice; once is enough", *index));
+            fail_usage(fmt::format("names GPU {} twice", *index), "once is enough");
         choice.indices.push_back(*index);
     }
     return choice;
@@ -57,9 +58,9 @@ std::vector<CudaDevice> pick_devices(const DeviceChoice& choice, const std::vect
         for (const CudaDevice& device : present)
             if (device.obstacle.empty()) picked.push_back(device);
         if (!picked.empty()) return picked;
-        if (present.empty()) fail_device("--device all: this machine has no GPU");
-        fail_device(fmt::format("--device all: no GPU can be used; {}: {}: {}", present[0].index, present[0].name,
-                                present[0].obstacle));
+        if (present.empty()) fail_device("all", "this machine has no GPU");
+        fail_device("all", fmt::format("no GPU can be used; {}: {}: {}", present[0].index, present[0].name,
+                                       present[0].obstacle));
     }
     for (const int index : choice.indices) {
         const auto device = std::find_if(present.begin(), present.end(),
@@ -67,11 +68,12 @@ std::vector<CudaDevice> pick_devices(const DeviceChoice& choice, const std::vect
         if (device == present.end()) {
             std::vector<int> indices;
             for (const CudaDevice& candidate : present) indices.push_back(candidate.index);
-            fail_device(fmt::format("--device {}: there is no such GPU; this machine has {}", index,
+            fail_device(fmt::format("{}", index), "there is no such GPU",
+                        fmt::format("this machine has {}",
                                     indices.empty() ? "none" : fmt::format("{}", fmt::join(indices, ", "))));
         }
         if (!device->obstacle.empty())
-            fail_device(fmt::format("--device {}: {} cannot be used: {}", index, device->name, device->obstacle));
+            fail_device(fmt::format("{}", index), fmt::format("{} cannot be used: {}", device->name, device->obstacle));
         picked.push_back(*device);
     }
     return picked;

@@ -29,10 +29,9 @@ struct FrameRange {
 
 FrameRange parse_range(std::string_view item) {
     const auto malformed = [&]() {
-        fail_usage(
-            fmt::format("\"{}\" is no frame (0 to {}), no range A-B and no range with a step A-BxS; "
-                        "a list looks like 0-299x5,7",
-                        first_characters(item, 40), largest_frame));
+        fail_usage(fmt::format("\"{}\" is no frame (0 to {}), no range A-B and no range with a step A-BxS",
+                               first_characters(item, 40), largest_frame),
+                   "a list looks like 0-299x5,7");
     };
     std::string_view rest = item;
     const std::optional<int> first = take_number(rest);
@@ -50,7 +49,7 @@ FrameRange parse_range(std::string_view item) {
         if (!given || !rest.empty()) malformed();
         step = *given;
     }
-    if (*last < *first) fail_usage(fmt::format("{} runs backward; write {}-{}", item, *last, *first));
+    if (*last < *first) fail_usage(fmt::format("{} runs backward", item), fmt::format("write {}-{}", *last, *first));
     if (step == 0) fail_usage(fmt::format("the step of {} must be 1 or more", item));
     return {*first, *last, step};
 }
@@ -65,7 +64,7 @@ std::vector<int> parse_frames(std::string_view text) {
         const FrameRange range = parse_range(part);
         for (int64_t frame = range.first; frame <= range.last; frame += range.step) {
             if (++written > most_frames)
-                fail_usage(fmt::format("more than {} frames; render them in several runs", most_frames));
+                fail_usage(fmt::format("more than {} frames", most_frames), "render them in several runs");
             const auto index = static_cast<size_t>(frame);
             if (!seen[index]) frames.push_back(static_cast<int>(frame));
             seen[index] = true;

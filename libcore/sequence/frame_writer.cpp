@@ -33,7 +33,8 @@ uint64_t clamped_values(const LayeredPicture& picture, std::atomic<uint64_t>& cl
     tbb::parallel_for(size_t{0}, (pixels + block - 1) / block, [&](size_t number) {
         const DefaultRounding rounding;
         std::array<float, block> values;
-        const size_t first = number * block, last = std::min(first + block, pixels);
+        const size_t first = number * block;
+        const size_t last = std::min(first + block, pixels);
         for (const LayeredPicture::Channel& channel : picture.channels)
             if (channel.half) channel.write(first, last, values.data());
     });
@@ -43,7 +44,7 @@ uint64_t clamped_values(const LayeredPicture& picture, std::atomic<uint64_t>& cl
 }  // namespace
 
 std::string over_largest_half(uint64_t values) {
-    return fmt::format("{} value{} over {:.0f}, the largest half; --bits float holds {}", values,
+    return fmt::format("{} value{} over {:.0f}, the largest half; `bits` float holds {}", values,
                        values == 1 ? " is" : "s are", largest_half, values == 1 ? "it" : "them");
 }
 
@@ -173,7 +174,7 @@ void FrameWriter::write(Task& task) {
     if (!raw) layers = channels_of(frame.film, channels_, &clamped);
     if (frame.strict)
         if (const uint64_t values = clamped_values(layers, clamped); values != 0)
-            throw Error(ExitCode::failed, fmt::format("{}: not written: {}", path, over_largest_half(values)));
+            throw Error(ErrorKind::failed, "not written: " + over_largest_half(values)).at(path);
     // The preview is written first: if the image is complete, --resume can rely on both.
     if (raw || !frame.preview.empty()) {
         ColorPicture color, preview;

@@ -95,8 +95,10 @@ class FrameWriter {
     std::map<size_t, FrameStats> done_;  // not yet passed on, since a frame before them is not done
     size_t next_passed_ = 0;
     std::vector<Film> spares_;
-    std::exception_ptr failure_;         // the first write error
-    size_t next_index_ = 0, bytes_ = 0;  // bytes_: of all frames in work
+    std::exception_ptr failure_;  // the first write error
+    // bytes_: of all frames in work
+    size_t next_index_ = 0;
+    size_t bytes_ = 0;
     int in_work_ = 0;
     size_t idle_ = 0;  // threads without work, including those that have not yet woken up for a waiting frame
     bool closing_ = false;

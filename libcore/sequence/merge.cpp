@@ -15,8 +15,8 @@
 namespace cistula {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
-    throw Error(ExitCode::failed, fmt::format("{}: {}", path, what));
+[[noreturn]] void fail(const std::string& path, const std::string& problem, const char* remedy = "") {
+    throw Error(ErrorKind::failed, problem, remedy).at(path);
 }
 
 PixelRect rect_of(const LayeredPicture& picture) {
@@ -39,7 +39,8 @@ std::string difference(const Attributes& own, const Attributes& first, const std
     for (const Attributes* attributes : {&own, &first})
         for (const auto& [name, value] : *attributes) names.push_back(name);
     for (const std::string& name : names) {
-        const auto a = own.find(name), b = first.find(name);
+        const auto a = own.find(name);
+        const auto b = first.find(name);
         if ((a == own.end()) == (b == first.end()) && (a == own.end() || a->second == b->second)) continue;
         return fmt::format("{} is {}, and {} in {}: they are of different renders; render it again as the others", name,
                            text(own, name), text(first, name), first_path);
@@ -72,13 +73,13 @@ void Merge::begin(const std::string& path, const std::vector<PicturePart>& tile)
     if (first.attributes.count("cistula:sceneHash") == 0)
         fail(path, "is no tile that render wrote: its header has no cistula:sceneHash");
     if (is_dwa(first.compression))
-        fail(path,
-             "its compression loses something, and not what that of the whole frame does; render tiles with another");
+        fail(path, "its compression loses something, and not what that of the whole frame does",
+             "render tiles with another");
     const PixelRect frame{0, 0, first.display_width, first.display_height};
     if (!window_) window_ = frame;
     if (!contains(frame, *window_))
-        throw Error(ExitCode::usage, fmt::format("--crop {}: leaves the frame, which is {}x{}", format_rect(*window_),
-                                                 frame.width, frame.height));
+        throw Error(ErrorKind::usage, fmt::format("`crop` {}: leaves the frame, which is {}x{}", format_rect(*window_),
+                                                  frame.width, frame.height));
     parts_ = tile;
     for (PicturePart& part : parts_) {
         LayeredPicture& picture = part.picture;
@@ -97,7 +98,7 @@ void Merge::check_window(const std::string& path, const PixelRect& rect) const {
              fmt::format("its pixels, {}, leave those to be covered, {}", format_rect(rect), format_rect(*window_)));
     for (const Placed& other : placed_)
         if (const PixelRect shared = intersection(rect, other.rect); !shared.is_empty())
-            fail(path, fmt::format("its pixels {} are also in {}; leave one out", format_rect(shared), other.path));
+            fail(path, fmt::format("its pixels {} are also in {}", format_rect(shared), other.path), "leave one out");
 }
 
 void Merge::check(const std::string& path, const std::vector<PicturePart>& tile) const {
@@ -120,7 +121,7 @@ void Merge::check(const std::string& path, const std::vector<PicturePart>& tile)
         if (channels_of(own) != channels_of(whole))
             fail(path, fmt::format("its channels are {}, and {} in {}", channels_of(own), channels_of(whole), first));
         if (own.compression != whole.compression)
-            fail(path, fmt::format("is compressed otherwise than {}; render it again as the others", first));
+            fail(path, fmt::format("is compressed otherwise than {}", first), "render it again as the others");
     }
 }
 
@@ -156,10 +157,11 @@ std::vector<PicturePart> Merge::whole() && {
         constexpr size_t most = 4;
         std::vector<std::string> texts;
         for (size_t i = 0; i < std::min(gaps.size(), most); ++i) texts.push_back(format_rect(gaps[i]));
-        throw Error(ExitCode::failed,
-                    fmt::format("{} of {} pixels are in no tile: {}{}; --crop names the pixels of a smaller whole",
-                                pixels, int64_t{window_->width} * window_->height, fmt::join(texts, ", "),
-                                gaps.size() > most ? " and others" : ""));
+        throw Error(
+            ErrorKind::failed,
+            fmt::format("{} of {} pixels are in no tile: {}{}", pixels, int64_t{window_->width} * window_->height,
+                        fmt::join(texts, ", "), gaps.size() > most ? " and others" : ""),
+            "`crop` names the pixels of a smaller whole");
     }
     return std::move(parts_);
 }
@@ -171,7 +173,8 @@ void add_around(const PixelRect& rect, const PixelRect& hole, std::vector<PixelR
     const auto add = [&](int x, int y, int width, int height) {
         if (width > 0 && height > 0) to.push_back({x, y, width, height});
     };
-    const int right = hole.x + hole.width, below = hole.y + hole.height;
+    const int right = hole.x + hole.width;
+    const int below = hole.y + hole.height;
     add(rect.x, rect.y, rect.width, hole.y - rect.y);
     add(rect.x, below, rect.width, rect.y + rect.height - below);
     add(rect.x, hole.y, hole.x - rect.x, hole.height);

@@ -35,26 +35,28 @@ void make_directory(const std::string& path) {
     std::error_code error;
     fs::create_directories(directory, error);
     if (error)
-        throw Error(ExitCode::file,
-                    fmt::format("{}: cannot be written: the directory {} cannot be made: {}; give another", path,
-                                directory.string(), error.message()));
+        throw Error(
+            ErrorKind::file,
+            fmt::format("cannot be written: the directory {} cannot be made: {}", directory.string(), error.message()),
+            "give another")
+            .at(path);
 }
 
 }  // namespace
 
 OutputName::OutputName(std::string_view text, std::string_view option) : text_(text) {
-    const auto fail = [&](const std::string& what) {
-        throw Error(ExitCode::usage, fmt::format("{} {}: {}", option, text, what));
+    const auto fail = [&](const std::string& problem, const std::string& remedy = "") {
+        throw Error(ErrorKind::usage, fmt::format("{} {}: {}", option, text, problem), remedy);
     };
-    if (text.empty()) throw Error(ExitCode::usage, fmt::format("{}: the file name is empty", option));
+    if (text.empty()) throw Error(ErrorKind::usage, fmt::format("{}: the file name is empty", option));
     if (const std::string other = other_pattern(text); !other.empty()) {
         std::string right(text);
         right.replace(right.rfind(other), other.size(), "####");
-        fail(fmt::format("{} is no place for the frame number here; #### or %04d is, as in {}", other, right));
+        fail(other + " is no place for the frame number here", "#### or %04d is, as in " + right);
     }
     std::string* part = &prefix_;
     const auto place = [&](int digits) {
-        if (has_pattern()) fail("two places for the frame number; a name has one, #### or %04d");
+        if (has_pattern()) fail("two places for the frame number", "a name has one, #### or %04d");
         if (digits > most_digits) fail(fmt::format("a frame number of more than {} digits", most_digits));
         digits_ = digits;
         part = &suffix_;
@@ -116,9 +118,10 @@ FileKind file_kind(const std::string& path) {
     const std::string extension = lower_extension(path);
     if (extension == ".exr") return FileKind::exr;
     if (extension == ".out" || extension == ".data") return FileKind::raw;
-    throw Error(ExitCode::usage,
-                fmt::format("-o {}: images are written as .exr, or as the seed's raw frames .out and .data; {}", path,
-                            extension == ".png" ? "for a PNG add --preview FILE.png" : "name it *.exr"));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("`output` {}: images are written as .exr, or as the seed's raw frames .out and .data", path),
+        extension == ".png" ? "for a PNG add `preview` FILE.png" : "name it *.exr");
 }
 
 std::string default_output(const SceneDescription& scene, size_t frames_given) {
@@ -133,10 +136,9 @@ std::vector<int> frames_to_render(const OutputName& output, const std::vector<in
     if (!output.has_pattern() && given.size() > 1) {
         fs::path better = output.text();
         better.replace_extension(".####" + better.extension().string());
-        throw Error(ExitCode::usage,
-                    fmt::format("-o {} holds one frame and --frames names {}; put the frame number into "
-                                "the name, as in -o {}",
-                                output.text(), given.size(), better.string()));
+        throw Error(ErrorKind::usage,
+                    fmt::format("`output` {} holds one frame and `frames` names {}", output.text(), given.size()),
+                    fmt::format("put the frame number into the name, as in `output` {}", better.string()));
     }
     if (!given.empty()) return given;
     std::vector<int> film(static_cast<size_t>(output.has_pattern() ? std::max(film_frames, 1) : 1));
@@ -146,28 +148,32 @@ std::vector<int> frames_to_render(const OutputName& output, const std::vector<in
 
 OutputName preview_name(const std::string& text, const std::vector<int>& frames) {
     if (text.empty()) return OutputName();
-    OutputName name(text, "--preview");
+    OutputName name(text, "`preview`");
     if (std::filesystem::path(text).extension() != ".png")
-        throw Error(ExitCode::usage, fmt::format("--preview {}: a preview is a PNG; name it *.png", text));
+        throw Error(ErrorKind::usage, fmt::format("`preview` {}: a preview is a PNG", text), "name it *.png");
     if (frames.size() > 1 && !name.has_pattern())
-        throw Error(ExitCode::usage,
-                    fmt::format("--preview {}: holds one frame of {}; put #### into the name", text, frames.size()));
+        throw Error(ErrorKind::usage, fmt::format("`preview` {}: holds one frame of {}", text, frames.size()),
+                    "put #### into the name");
     return name;
+}
+
+std::set<int> numbers_in(const std::string& path) {
+    std::set<int> numbers;
+    const auto is_digit = [&](size_t i) { return i < path.size() && path[i] >= '0' && path[i] <= '9'; };
+    for (size_t begin = 0; begin < path.size(); ++begin) {
+        int number = 0;
+        for (size_t i = begin; is_digit(i); ++i) {
+            number = number * 10 + (path[i] - '0');
+            if (number > largest_frame) break;
+            numbers.insert(number);
+        }
+    }
+    return numbers;
 }
 
 std::vector<int> frames_named_in(const std::vector<std::string>& paths, const std::vector<int>& frames) {
     std::set<int> numbers;
-    for (const std::string& path : paths) {
-        const auto is_digit = [&](size_t i) { return i < path.size() && path[i] >= '0' && path[i] <= '9'; };
-        for (size_t begin = 0; begin < path.size(); ++begin) {
-            int number = 0;
-            for (size_t i = begin; is_digit(i); ++i) {
-                number = number * 10 + (path[i] - '0');
-                if (number > largest_frame) break;
-                numbers.insert(number);
-            }
-        }
-    }
+    for (const std::string& path : paths) numbers.merge(numbers_in(path));
     std::vector<int> named;
     std::copy_if(frames.begin(), frames.end(), std::back_inserter(named),
                  [&](int frame) { return numbers.contains(frame); });
@@ -192,7 +198,7 @@ void make_directory_of(const std::string& path) {
     make_directory(path);
     std::error_code error;
     if (fs::is_directory(path, error))
-        throw Error(ExitCode::file, fmt::format("{}: cannot be written: it is a directory; name a file in it", path));
+        throw Error(ErrorKind::file, "cannot be written: it is a directory", "name a file in it").at(path);
 }
 
 void make_directories(const OutputName& name, const std::vector<int>& frames) {

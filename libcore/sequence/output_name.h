@@ -1,6 +1,7 @@
 // File names with a place for the frame number: beauty.####.exr, beauty.%04d.exr, frame%d.out.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,7 @@ class OutputName {
   public:
     OutputName() = default;
 
-    /// `option` is the option named in messages ("-o"). Throws Error (usage) if the text holds two patterns or another
+    /// `option` names it in messages ("`output`"). Throws Error (usage) if the text holds two patterns or another
     /// conversion.
     OutputName(std::string_view text, std::string_view option);
 
@@ -55,6 +56,9 @@ std::vector<int> frames_to_render(const OutputName& output, const std::vector<in
 
 /// The name of previews of these frames; an empty text is none. Throws Error (usage).
 OutputName preview_name(const std::string& text, const std::vector<int>& frames);
+
+/// The frame numbers that stand in a path, in whole or as a part of a longer number.
+std::set<int> numbers_in(const std::string& path);
 
 /// The frames of a list whose file could be one of these paths: those whose numbers stand in one, in whole or as a part
 /// of a longer number.

@@ -13,8 +13,8 @@
 #include "cistula/model/effects.h"
 #include "cistula/model/lattice_settings.h"
 #include "cistula/transport/ray_tree.h"
-#include "render/frame_settings.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
+#include "render/renderer.h"
 #include "scene/readers/json_reader.h"
 #include "scene/readers/read_scene.h"
 #include "sequence/frame_list.h"
@@ -24,7 +24,8 @@ namespace {
 
 using Request = RenderRequest;
 
-constexpr bool of_suite = true, not_of_suite = false;
+constexpr bool of_suite = true;
+constexpr bool not_of_suite = false;
 constexpr std::string_view precision_choices[] = {"auto", "float", "double"};
 constexpr std::string_view effects_choices[] = {"auto", "all"};
 constexpr std::string_view bits_choices[] = {"float", "half"};
@@ -65,7 +66,7 @@ RequestKey numeric(const Key& key, const KeyWords& words, At at, const std::stri
             [key, at, right](Request& request, const std::string& text) {
                 std::optional<double> value = whole_number<double>(text);
                 if (key.type == KeyType::whole && !whole_number<int>(text)) value.reset();  // 4.0 is a number alone
-                if (!value || !key.range.contains(*value)) fail_usage(right);
+                if (!value || !key.range.contains(*value)) fail_usage("", right);
                 std::invoke(at, request) =
                     static_cast<std::remove_cvref_t<std::invoke_result_t<At, Request&>>>(*value + 0.0);  // -0 becomes 0
             },
@@ -119,7 +120,7 @@ RequestKey other(std::string_view name, const KeyWords& words, decltype(RequestK
 void set_space(Request& request, const std::string& name) {
     const ColorSpace* const space = find_color_space(name);
     if (!space)
-        fail_usage("there is no such space; " +
+        fail_usage("there is no such space",
                    nearest_first(name, {std::begin(space_choices), std::end(space_choices)}, "spaces"));
     request.channels.space = space;
 }
@@ -128,31 +129,30 @@ void set_z_far(Request& request, const std::string& text) {
     const double value = whole_number<double>(text).value_or(0);
     constexpr double largest = std::numeric_limits<float>::max();
     if (!(value > 0) || (value > largest && value != INFINITY) || static_cast<float>(value) == 0)
-        fail_usage("must be a number above 0 in single precision, or inf");
+        fail_usage("", "must be a number above 0 in single precision, or inf");
     request.channels.z_far = static_cast<float>(value);
 }
 
 std::vector<RequestKey> make_keys() {
     const std::string radiance = ", in the scene's units of radiance";
-    const Key cutoff = scene_key(scene_keys, "cutoff"), target = number("target_error", {0, cutoff.range.high, true});
+    const Key cutoff = scene_key(scene_keys, "cutoff");
+    const Key target = number("target_error", {0, cutoff.range.high, true});
     return {
-        text("scene", {"SCENE", "", "scene file: JSON or the seed's text; - reads standard input", of_suite},
-             &Request::scene),
+        text("scene", {"", "scene file: JSON or the seed's text; - reads standard input", of_suite}, &Request::scene),
         text("output",
-             {"--output,-o", "FILE",
-              "image: .exr, or .out/.data for the seed's raw frames; #### or %04d is the frame number"},
+             {"FILE", "image: .exr, or .out/.data for the seed's raw frames; #### or %04d is the frame number"},
              &Request::output),
         other(
-            "frames", {"-f,--frames", "LIST", "frames to render, e.g. 0-299x5,7", of_suite},
+            "frames", {"LIST", "frames to render, e.g. 0-299x5,7", of_suite},
             [](Request& r, const std::string& list) { r.frames = parse_frames(list); },
             [](const Request& r) { return format_frames(r.frames); }),
-        choice("backend", backend_names, {"--backend", "NAME", "embree (CPU) or cuda (GPU)"}, &Request::backend),
+        choice("backend", backend_names, {"NAME", "embree (CPU) or cuda (GPU)"}, &Request::backend),
         other(
-            "device", {"--device", "LIST", "with --backend cuda: GPUs that share every frame, e.g. 0,2, or all; 0"},
+            "device", {"LIST", "with `backend` cuda: GPUs that share every frame, e.g. 0,2, or all; 0"},
             [](Request& r, const std::string& list) { r.devices = parse_devices(list, r.backend); },
             [](const Request& r) { return devices_text(r.devices); }),
         other(
-            "resolution", {"--res", "WxH", "full frame in pixels", of_suite},
+            "resolution", {"WxH", "full frame in pixels", of_suite},
             [](Request& r, const std::string& size) {
                 const PictureSize given = parse_size(size);
                 r.frame.full_width = given.width;
@@ -162,103 +162,94 @@ std::vector<RequestKey> make_keys() {
                 return r.frame.full_width == 0 ? "" : fmt::format("{}x{}", r.frame.full_width, r.frame.full_height);
             }),
         other(
-            "crop", {"--crop", "WxH+X+Y", "render these pixels only; the file's data window", of_suite},
+            "crop", {"WxH+X+Y", "render these pixels only; the file's data window", of_suite},
             [](Request& r, const std::string& crop) { r.frame.crop = parse_crop(crop); },
             [](const Request& r) { return r.frame.crop.width == 0 ? "" : format_rect(r.frame.crop); }),
         other(
-            "tiles", {"--tiles", "CxR", "with --tile: the grid of tiles that the frame, or the crop, is cut into"},
+            "tiles", {"CxR", "with `tile`: the grid of tiles that the frame, or the crop, is cut into"},
             [](Request& r, const std::string& grid) { r.tiles = parse_tiles(grid); },
             [](const Request& r) { return r.tiles ? fmt::format("{}x{}", r.tiles->columns, r.tiles->rows) : ""; }),
         other(
-            "tile",
-            {"--tile", "N", "render this tile alone, counted from 0; render-merge joins them", not_of_suite, "",
-             "tiles"},
+            "tile", {"N", "render this tile alone, counted from 0; render-merge joins them", not_of_suite, "", "tiles"},
             [](Request& r, const std::string& tile) {
                 r.tile = integer_in(tile, 0, r.tiles ? r.tiles->count() - 1 : most_tiles);
             },
             [](const Request& r) { return r.tile ? fmt::format("{}", *r.tile) : ""; }),
         numeric(scene_key(film_keys, "supersample"),
-                {"--supersample", "K", "k: a k x k grid of samples per pixel", of_suite, "cistula:supersample"},
+                {"K", "k: a k x k grid of samples per pixel", of_suite, "cistula:supersample"},
                 of(&Request::frame, &FrameSettings::supersample)),
         numeric(scene_key(scene_keys, "depth"),
-                {"--depth", "N", "surfaces shaded along a path, 1 to 1024", of_suite, "cistula:depth"},
+                {"N", "surfaces shaded along a path, 1 to 1024", of_suite, "cistula:depth"},
                 of(&Request::frame, &FrameSettings::depth)),
         numeric(cutoff,
-                {"--cutoff", "E", "radiance that dropping faint branches may cost a pixel; 0: none", of_suite,
-                 "cistula:cutoff"},
+                {"E", "radiance that dropping faint branches may cost a pixel; 0: none", of_suite, "cistula:cutoff"},
                 of(&Request::frame, &FrameSettings::cutoff), expected_text(cutoff) + radiance),
         numeric(target,
-                {"--target-error", "E",
-                 "radiance by which a pixel may be wrong: samples and branches as needed, whatever --supersample",
+                {"E", "radiance by which a pixel may be wrong: samples and branches as needed, whatever `supersample`",
                  of_suite, "cistula:targetError"},
                 of(&Request::frame, &FrameSettings::target_error), expected_text(target) + radiance),
         numeric(whole("max_samples", least_lattice_samples, lattice_samples),
-                {"--max-samples", "N", "with --target-error: samples of a pixel, 5 to 256; 256", of_suite,
-                 "cistula:maxSamples", "target_error"},
+                {"N", "with `target_error`: samples of a pixel, 5 to 256; 256", of_suite, "cistula:maxSamples",
+                 "target_error"},
                 of(&Request::frame, &FrameSettings::max_samples)),
         choice("effects", effects_choices,
-               {"--effects", "NAME", "auto: compiled are those the scene calls for; all: every one, to compare"},
+               {"NAME", "auto: compiled are those the scene calls for; all: every one, to compare"},
                of(&Request::frame, &FrameSettings::effects), "", std::vector<uint32_t>{0, all_effects}),
         choice("precision", precision_choices,
-               {"--precision", "NAME", "auto (float, or double where parts are too small for it), float or double",
-                of_suite, "cistula:precision"},
+               {"NAME", "auto (float, or double where parts are too small for it), float or double", of_suite,
+                "cistula:precision"},
                &Request::precision, "\"auto\"",
                std::vector<std::optional<Precision>>{std::nullopt, Precision::single_, Precision::double_}),
-        numeric(whole("threads", 1, 1024), {"--threads", "N", "threads; all by default"}, &Request::threads),
+        numeric(whole("threads", 1, 1024), {"N", "threads; all by default"}, &Request::threads),
         numeric(whole("lanes", 1, 16),
-                {"--lanes", "N", "rays that a CPU thread traces at once, at most; 1 to 16, all that it can by default"},
+                {"N", "rays that a CPU thread traces at once, at most; 1 to 16, all that it can by default"},
                 of(&Request::frame, &FrameSettings::lanes)),
         numeric(number("max_texture_gb", {0, 1e6, true}),
-                {"--max-texture-gb", "N", "memory for all textures, in GB of 10^9 bytes; a quarter of the machine's"},
+                {"N", "memory for all textures, in GB of 10^9 bytes; a quarter of the machine's"},
                 &Request::texture_gb),
-        choice("bits", bits_choices, {"--bits", "NAME", "float (32 bits a channel) or half (16)", of_suite},
+        choice("bits", bits_choices, {"NAME", "float (32 bits a channel) or half (16)", of_suite},
                of(&Request::channels, &OutputChannels::half), "\"float\""),
-        flag("strict", {"--strict", "", "with --bits half: a value over 65504 is an error, and not clamped"},
-             &Request::strict),
+        flag("strict", {"", "with `bits` half: a value over 65504 is an error, and not clamped"}, &Request::strict),
         other(
             "layers",
-            {"--layers", "LIST", "more layers: path, light, data, cryptomatte, or single ones such as diffuse, Z, N",
-             of_suite},
+            {"LIST", "more layers: path, light, data, cryptomatte, or single ones such as diffuse, Z, N", of_suite},
             [](Request& r, const std::string& list) {
                 r.channels = parse_layers(list, r.channels);
                 r.layers = list;
             },
             [](const Request& r) { return r.layers; }),
-        choice("split", split_choices,
-               {"--split", "NAME",
-                "layers go into: none, the beauty's part of the file; parts of their own; or files of their own",
-                not_of_suite, "", "layers"},
-               &Request::split),
-        other(
-            "z_far",
-            {"--z-far", "Z", "with --layers Z: the depth of nothing, a number or inf; 1e10", of_suite, "cistula:zFar"},
-            set_z_far, [](const Request& r) { return fmt::format("{}", r.channels.z_far); }),
-        choice("background", background_choices,
-               {"--background", "NAME", "opaque, or transparent: alpha is coverage, color premultiplied", of_suite,
-                "cistula:background"},
-               of(&Request::channels, &OutputChannels::transparent), "\"opaque\""),
+        choice(
+            "split", split_choices,
+            {"NAME", "layers go into: none, the beauty's part of the file; parts of their own; or files of their own",
+             not_of_suite, "", "layers"},
+            &Request::split),
+        other("z_far", {"Z", "with `layers` Z: the depth of nothing, a number or inf; 1e10", of_suite, "cistula:zFar"},
+              set_z_far, [](const Request& r) { return fmt::format("{}", r.channels.z_far); }),
+        choice(
+            "background", background_choices,
+            {"NAME", "opaque, or transparent: alpha is coverage, color premultiplied", of_suite, "cistula:background"},
+            of(&Request::channels, &OutputChannels::transparent), "\"opaque\""),
         {{"colorspace", KeyType::choice, {}, "\"lin_rec709_scene\"", false, space_choices},
-         {"--colorspace", "NAME",
+         {"NAME",
           "lin_rec709_scene, lin_ap1_scene (ACEScg), lin_ap0_scene (ACES2065-1), lin_rec2020_scene, lin_p3d65_scene or "
           "lin_adobergb_scene",
           of_suite, "colorInteropID"},
          set_space,
          [](const Request& r) { return std::string(r.channels.space->id); }},
         choice("compression", compression_names,
-               {"--compression", "NAME", fmt::format("{}; those of dwa lose some", fmt::join(compression_names, ", "))},
+               {"NAME", fmt::format("{}; those of dwa lose some", fmt::join(compression_names, ", "))},
                of(&Request::channels, &OutputChannels::compression)),
         numeric(number("dwa_level", {0, 1000}),
-                {"--dwa-level", "L", "with dwaa and dwab: 0 to 1000, more is smaller; 45", not_of_suite,
-                 "cistula:dwaLevel"},
+                {"L", "with dwaa and dwab: 0 to 1000, more is smaller; 45", not_of_suite, "cistula:dwaLevel"},
                 of(&Request::channels, &OutputChannels::dwa_level)),
-        text("preview", {"--preview", "FILE", "also a PNG, clamped, sRGB; may hold a pattern"}, &Request::preview),
+        text("preview", {"FILE", "also a PNG, clamped, sRGB; may hold a pattern"}, &Request::preview),
         numeric(number("exposure", {-64, 64}),
-                {"--exposure", "EV", "with --preview: stops by which it is brighter; 0", not_of_suite, "", "preview"},
+                {"EV", "with `preview`: stops by which it is brighter; 0", not_of_suite, "", "preview"},
                 of(&Request::view, &PictureView::exposure), "a number of stops from -64 to 64; each doubles the light"),
         other(
             "view",
-            {"--view", "NAME",
-             "with --preview: srgb cuts off above white, filmic tells bright colors apart, or a view of $OCIO; srgb",
+            {"NAME",
+             "with `preview`: srgb cuts off above white, filmic tells bright colors apart, or a view of $OCIO; srgb",
              not_of_suite, "", "preview"},
             [](Request& r, const std::string& name) {
                 r.view.curve = name == "filmic" ? ViewCurve::filmic : ViewCurve::srgb;
@@ -268,19 +259,17 @@ std::vector<RequestKey> make_keys() {
                 return r.view.name.empty() ? own_views[static_cast<size_t>(r.view.curve)] : r.view.name;
             }),
         numeric(number("bloom", {0, 100}),
-                {"--bloom", "AMOUNT", "with --preview: how much light above white glows around; 0", not_of_suite, "",
-                 "preview"},
+                {"AMOUNT", "with `preview`: how much light above white glows around; 0", not_of_suite, "", "preview"},
                 of(&Request::view, &PictureView::bloom),
                 "a number from 0 to 100; 1 adds the light above white once, spread around it"),
-        text("stats", {"--stats", "FILE", "times, rays, memory and the effects mask as JSON"}, &Request::stats),
-        flag("resume", {"--resume", "", "skip frames whose file is complete and of the same scene and settings"},
-             &Request::resume),
+        text("stats", {"FILE", "times, rays, memory and the effects mask as JSON"}, &Request::stats),
+        flag("resume", {"", "skip frames whose file is complete and of the same scene and settings"}, &Request::resume),
         choice("progress", progress_choices,
-               {"--progress", "STYLE",
+               {"STYLE",
                 "auto, plain or none; or, for programs, on standard output: json, or openjd (Open Job Description)"},
                &Request::progress),
-        flag("quiet", {"-q,--quiet", "", "errors only"}, &Request::quiet),
-        flag("verbose", {"-v,--verbose", "", "also times, hashes and effects"}, &Request::verbose),
+        flag("quiet", {"", "errors only"}, &Request::quiet),
+        flag("verbose", {"", "also times, hashes and effects"}, &Request::verbose),
     };
 }
 
@@ -291,7 +280,7 @@ struct Exclusion {
 };
 constexpr const char* other_losses = "a tile would lose something else than the whole frame does";
 constexpr Exclusion exclusions[] = {
-    {"tile", "preview", "", "it is of whole frames; render-merge --preview makes it"},
+    {"tile", "preview", "", "it is of whole frames; render-merge `preview` makes it"},
     {"tiles", "compression", "dwaa", other_losses},
     {"tiles", "compression", "dwab", other_losses},
     {"lanes", "backend", "cuda", "a thread of a GPU traces one ray"},
@@ -312,18 +301,14 @@ const RequestKey& request_key(std::string_view name) {
     throw std::logic_error(fmt::format("there is no key '{}' of a request", name));
 }
 
-std::string option_name(const RequestKey& key) {
-    return std::string(key.option.substr(key.option.rfind(',') + 1));
-}
-
-std::string quoted_name(const RequestKey& key) {
-    return fmt::format("\"{}\"", key.name);
+std::string quoted_name(std::string_view key) {
+    return fmt::format("\"{}\"", key);
 }
 
 void read_key(RenderRequest& request, const RequestKey& key, const JsonValue& value) {
     const Json& json = value.json();
-    const bool is_free = key.type == KeyType::other,
-               is_number = key.type == KeyType::whole || key.type == KeyType::number;
+    const bool is_free = key.type == KeyType::other;
+    const bool is_number = key.type == KeyType::whole || key.type == KeyType::number;
     std::string given = found_text(json);
     if (json.is_number() && (is_number || is_free)) {
         given = number_text(json.get<double>());
@@ -342,23 +327,25 @@ void read_key(RenderRequest& request, const RequestKey& key, const JsonValue& va
     }
 }
 
-void check_request(const RenderRequest& request, KeyName name) {
-    const auto fail = [&](const RequestKey& key, const std::string& what) {
-        fail_usage(fmt::format("{} {}: {}", name(key), key.text(request), what));
+void check_request(const RenderRequest& request) {
+    const auto fail = [&](const RequestKey& key, const std::string& problem, const char* remedy = "") {
+        throw Error(ErrorKind::usage, problem, remedy).of(key.name, key.text(request));
     };
     for (const Exclusion& excluded : exclusions) {
         const RequestKey &key = request_key(excluded.key), &other = request_key(excluded.other);
         if (!key.given(request) || !other.given(request)) continue;
         if (!excluded.value.empty() && other.text(request) != excluded.value) continue;
-        fail(key, fmt::format("{}{}{} has no place here: {}; leave it out", name(other),
-                              excluded.value.empty() ? "" : " ", excluded.value, excluded.why));
+        fail(key,
+             fmt::format("`{}`{}{} has no place here: {}", other.name, excluded.value.empty() ? "" : " ",
+                         excluded.value, excluded.why),
+             "leave it out");
     }
     for (const RequestKey& key : request_keys())
         if (!key.needs.empty() && key.given(request) && !request_key(key.needs).given(request))
-            fail(key, "is for " + name(request_key(key.needs)));
+            fail(key, fmt::format("is for `{}`", key.needs));
     const RequestKey& level = request_key("dwa_level");
     if (level.given(request) && !is_dwa(request.channels.compression))
-        fail(level, fmt::format("is for {} dwaa and dwab", name(request_key("compression"))));
+        fail(level, "is for `compression` dwaa and dwab");
 }
 
 SceneDescription read_scene(const RenderRequest& request) {
@@ -367,7 +354,7 @@ SceneDescription read_scene(const RenderRequest& request) {
     return scene;
 }
 
-FrameSettings frame_settings(const RenderRequest& request, const SceneDescription& scene, KeyName name) {
+FrameSettings frame_settings(const RenderRequest& request, const SceneDescription& scene) {
     const FrameSettings own = frame_settings(scene);
     FrameSettings settings = request.frame;
     if (settings.full_width == 0) {
@@ -384,8 +371,8 @@ FrameSettings frame_settings(const RenderRequest& request, const SceneDescriptio
     if (crop.width == 0) crop = {0, 0, settings.full_width, settings.full_height};
     if (crop.x < 0 || crop.y < 0 || crop.x > settings.full_width - crop.width ||
         crop.y > settings.full_height - crop.height)
-        fail_usage(fmt::format("{} {}: leaves the frame, which is {}x{}", name(request_key("crop")), format_rect(crop),
-                               settings.full_width, settings.full_height));
+        fail_usage(fmt::format("`crop` {}: leaves the frame, which is {}x{}", format_rect(crop), settings.full_width,
+                               settings.full_height));
     if (request.tile) crop = tile_rect(crop, request.tiles.value_or(TileGrid()), *request.tile);
     return settings;
 }

@@ -31,7 +31,7 @@ struct RenderRequest {
     FrameSettings frame = {.full_width = 0, .full_height = 0, .supersample = 0, .depth = 0, .cutoff = -1};
     std::optional<TileGrid> tiles;       // over the crop or the full frame
     std::optional<int> tile;             // the one to render; none: all pixels
-    std::optional<Precision> precision;  // none: the scene decides (precision_choice.h)
+    std::optional<Precision> precision;  // none: the scene decides (choose_precision)
     int threads = 0;                     // 0: one per core
     double texture_gb = 0;               // for all textures; 0: default_texture_bytes()
     std::string layers;                  // as given
@@ -40,13 +40,14 @@ struct RenderRequest {
     Split split = Split::none;   // of the layers
     std::string preview, stats;  // files, as given; empty: none
     PictureView view;            // of previews
-    bool resume = false, quiet = false, verbose = false;
+    bool resume = false;
+    bool quiet = false;
+    bool verbose = false;
     ProgressStyle progress = ProgressStyle::automatic;
 };
 
-/// How a key is called where it is given, and what is told of it.
+/// What is told of a key. Other keys stand in texts as `layers` (base/error.h).
 struct KeyWords {
-    std::string_view option;       // names on the command line, that of messages last
     std::string_view shape;        // of its value in --help; empty: it has none
     std::string help;              // with the default at its end
     bool in_suite = false;         // whether a suite.json may have it
@@ -72,20 +73,18 @@ const RequestKey& request_key(std::string_view name);
 /// Reads a value in JSON. Throws Error (usage): the place, the value and what would be right.
 void read_key(RenderRequest& request, const RequestKey& key, const JsonValue& value);
 
-/// How messages name keys: as options, --depth, or as in JSON, "depth".
-using KeyName = std::string (*)(const RequestKey&);
-std::string option_name(const RequestKey& key);
-std::string quoted_name(const RequestKey& key);
+/// How JSON names keys: "depth" in double quotes.
+std::string quoted_name(std::string_view key);
 
 /// Throws Error (usage) for keys that say nothing of what is rendered, or do not fit together.
-void check_request(const RenderRequest& request, KeyName name = option_name);
+void check_request(const RenderRequest& request);
 
 /// Reads the scene, and adds what the request says about reading it. Throws Error.
 SceneDescription read_scene(const RenderRequest& request);
 
 /// The settings of every frame: the request's, and where it has none the scene's. Throws Error (usage) if the crop is
 /// not inside the frame.
-FrameSettings frame_settings(const RenderRequest& request, const SceneDescription& scene, KeyName name = option_name);
+FrameSettings frame_settings(const RenderRequest& request, const SceneDescription& scene);
 
 /// Opens the view of a config that `view` names, if it does. Returns a warning, or nothing. Throws Error: usage for an
 /// unknown view, with those that exist; file where the config cannot be used.

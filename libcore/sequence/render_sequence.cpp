@@ -12,8 +12,8 @@
 #include "base/stages.h"
 #include "base/timing.h"
 #include "image/exr/exr.h"
-#include "render/layer_list.h"
-#include "scene/description/camera_turns.h"
+#include "render/record/film_picture.h"
+#include "scene/description/camera_path.h"
 #include "sequence/run_files.h"
 #include "sequence/sequence_loop.h"
 #include "sequence/snapshots.h"
@@ -26,7 +26,7 @@ class SequenceFiles {
   public:
     SequenceFiles(const RenderRequest& request, const SceneDescription& scene) : request_(request), scene_(scene) {
         const std::string name = request.output.empty() ? default_output(scene, request.frames.size()) : request.output;
-        image = OutputName(name, "-o");
+        image = OutputName(name, "`output`");
         if (request.tile) image = image.named(tile_name(*request.tiles, *request.tile));
         frames = frames_to_render(image, request.frames, scene.film.frames);
         if (file_kind(name) == FileKind::raw) refuse_layers_of_raw(name);
@@ -37,7 +37,7 @@ class SequenceFiles {
     /// frames, and finds their cameras. Returns a warning, or nothing.
     std::string prepare(const std::vector<std::string>& read) {
         others_.reads_scene(request_.scene, read);
-        others_.writes(request_.stats, "--stats");
+        others_.writes(request_.stats, "`stats`");
         named_ = read;
         named_.insert(named_.end(), {request_.scene, request_.stats});
         require_different_named();
@@ -71,18 +71,17 @@ class SequenceFiles {
 
   private:
     void refuse_layers_of_raw(const std::string& name) const {
-        const auto refuse = [&](std::string_view key, const char* value, const char* why) {
-            throw Error(ExitCode::usage,
-                        fmt::format("-o {}: {}{} needs an .exr; {}", name, option_name(request_key(key)), value, why));
+        const auto refuse = [&](const char* setting, const char* why) {
+            throw Error(ErrorKind::usage, fmt::format("`output` {}: {} needs an .exr", name, setting), why);
         };
         const OutputChannels& channels = request_.channels;
-        if (channels.half) refuse("bits", " half", "raw frames have 8 bits a channel");
-        if (!request_.layers.empty()) refuse("layers", "", "raw frames have none");
-        if (channels.transparent) refuse("background", " transparent", "raw frames have no alpha");
-        if (channels.space != &color_spaces().front()) refuse("colorspace", "", "raw frames are sRGB");
-        if (channels.compression != Compression::zip) refuse("compression", "", "raw frames have none");
-        if (request_.tile) refuse("tile", "", "raw frames do not say what part they are");
-        if (request_.resume) refuse("resume", "", "raw frames do not say what they show");
+        if (channels.half) refuse("`bits` half", "raw frames have 8 bits a channel");
+        if (!request_.layers.empty()) refuse("`layers`", "raw frames have none");
+        if (channels.transparent) refuse("`background` transparent", "raw frames have no alpha");
+        if (channels.space != &color_spaces().front()) refuse("`colorspace`", "raw frames are sRGB");
+        if (channels.compression != Compression::zip) refuse("`compression`", "raw frames have none");
+        if (request_.tile) refuse("`tile`", "raw frames do not say what part they are");
+        if (request_.resume) refuse("`resume`", "raw frames do not say what they show");
     }
 
     void require_different(const std::vector<int>& some) const {

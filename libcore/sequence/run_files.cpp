@@ -58,8 +58,10 @@ void RunFiles::writes(const std::string& path, const std::string& what) {
     const auto [entry, is_new] = uses_.emplace(place_of(path), Use{path, what});
     if (is_new) return;
     const Use& other = entry->second;
-    throw Error(ExitCode::usage, fmt::format("{}: would be both {} and {}{}; give each a file of its own", path,
-                                             other.what, what, other.what == what ? ", " + other.path : ""));
+    throw Error(ErrorKind::usage,
+                fmt::format("would be both {} and {}{}", other.what, what, other.what == what ? ", " + other.path : ""),
+                "give each a file of its own")
+        .at(path);
 }
 
 }  // namespace cistula

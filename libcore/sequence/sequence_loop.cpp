@@ -136,10 +136,9 @@ class FramesToRender {
 /// `rendered`: index of the first frame that was not.
 [[noreturn]] void fail_interrupted(const SequenceJob& job, size_t done, size_t rendered) {
     const bool raw = file_kind(job.output.text()) == FileKind::raw;
-    throw Error(ExitCode::interrupted,
-                fmt::format("interrupted; {} of {} frames written; the same command with {} goes on from here", done,
-                            job.frames.size(),
-                            raw ? "--frames " + format_frames(job.frames, rendered) : std::string("--resume")));
+    throw Error(ErrorKind::interrupted, fmt::format("interrupted; {} of {} frames written", done, job.frames.size()),
+                fmt::format("the same command with {} goes on from here",
+                            raw ? "`frames` " + format_frames(job.frames, rendered) : std::string("`resume`")));
 }
 
 FrameStats stats_of(const Film& film, int frame, const std::string& path, double seconds, const RenderTimes& device) {
@@ -222,9 +221,10 @@ size_t render_and_write(const SequenceJob& job, Renderer& renderer, RenderProgre
             if (!whole) break;
             if (finished.film.flags != 0) {
                 writer.finish();
-                throw Error(ExitCode::failed,
-                            fmt::format("{}: frame {} cannot be trusted and is not written: {}", job.scene.source,
-                                        camera.frame, describe_flags(finished.film.flags, job.scene)));
+                throw Error(ErrorKind::failed,
+                            fmt::format("frame {} cannot be trusted and is not written: {}", camera.frame,
+                                        describe_flags(finished.film.flags, job.scene)))
+                    .at(job.scene.source);
             }
             describe(finished, job, camera, seconds, renderer);
             job.events.end_frame(finished.stats);
@@ -309,7 +309,7 @@ void render_frames(const SequenceJob& job, Renderer& renderer, RenderProgress& p
     const bool is_missed = stats.totals.target.missed != 0;
     if (!target.empty() && !is_missed) job.events.remark(target);
     job.events.end(stats, done, job.frames.size());
-    if (is_missed) throw Error(ExitCode::target, target);
+    if (is_missed) throw Error(ErrorKind::target, target);
 }
 
 }  // namespace cistula

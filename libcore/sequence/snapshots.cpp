@@ -1,6 +1,6 @@
 #include "sequence/snapshots.h"
 
-#include "base/option_text.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 

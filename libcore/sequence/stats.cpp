@@ -109,7 +109,7 @@ std::string describe_depth_loss(const SequenceTotals& totals, const std::string&
                                                 totals.frames, totals.depth_loss_frame);
     return fmt::format(
         "{}: depth {} may have taken up to {:.2g} from a pixel and {:.2g} in the mean, where the picture's mean is "
-        "{:.2g}: see --depth and --layers error",
+        "{:.2g}: see `depth` and `layers` error",
         where, depth, loss.worst, loss.mean, loss.brightness);
 }
 

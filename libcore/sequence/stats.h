@@ -37,7 +37,8 @@ struct DepthLoss {
 struct FrameStats {
     int frame = 0;
     std::string file, hash;  // hash: of the film's integers
-    int width = 0, height = 0;
+    int width = 0;
+    int height = 0;
     double render_seconds = 0, encode_seconds = 0, write_seconds = 0;
     RenderTimes device;  // zeros for backends without devices
     RayCounts rays;
@@ -50,9 +51,13 @@ struct FrameStats {
 
 /// Sums over the frames of a sequence that were written.
 struct SequenceTotals {
-    uint64_t frames = 0, pixels = 0, rays = 0;
+    uint64_t frames = 0;
+    uint64_t pixels = 0;
+    uint64_t rays = 0;
     double render_seconds = 0;
-    uint64_t clamped = 0, clamped_frames = 0;  // values over the largest half, frames that have any
+    // values over the largest half, frames that have any
+    uint64_t clamped = 0;
+    uint64_t clamped_frames = 0;
     TargetReport target;
     uint64_t dark_frames = 0;  // in which is seen what the depth took
     DepthLoss depth_loss;      // of the worst of them
@@ -66,12 +71,15 @@ struct RunStats {
     Backend backend = Backend::embree;
     Precision precision = Precision::single_;
     std::string scene, scene_hash, intersector, driver;
-    std::string images;                          // the name or pattern of the frames' files
-    double seconds = 0;                          // from the first frame to the last file
-    std::vector<std::string> devices;            // GPUs; empty, like the driver, if none is used
-    uint32_t required_effects = 0, effects = 0;  // masks
-    size_t scene_bytes = 0;                      // geometry, trees and shading data
-    int threads = 0, lanes = 1;
+    std::string images;                // the name or pattern of the frames' files
+    double seconds = 0;                // from the first frame to the last file
+    std::vector<std::string> devices;  // GPUs; empty, like the driver, if none is used
+    // masks
+    uint32_t required_effects = 0;
+    uint32_t effects = 0;
+    size_t scene_bytes = 0;  // geometry, trees and shading data
+    int threads = 0;
+    int lanes = 1;
     SequenceTotals totals;
     std::vector<int> resumed;  // frames that --resume skipped
 };

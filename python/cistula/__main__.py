@@ -3,7 +3,10 @@ import importlib
 import sys
 from collections.abc import Sequence
 
+from cistula.command import run
+
 COMMANDS = {
+    "report": "what accuracy costs in time, measured and shown as a page",
     "view": "layers of EXR pictures as PNG, and contact sheets",
     "farm": "tasks of a film, for OpenJD, Slurm and make",
 }
@@ -23,8 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if name not in COMMANDS:
         print(f"cistula: {name}: no such command; there are {', '.join(COMMANDS)}", file=sys.stderr)
         return 2
-    result = importlib.import_module("." + name, __package__).main(others)
-    return int(result)
+    return run(name, lambda: int(importlib.import_module("." + name, "cistula").main(others)))
 
 
 if __name__ == "__main__":

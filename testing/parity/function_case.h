@@ -2,9 +2,11 @@
 #pragma once
 
 #include "cistula/numerics/double_double.h"
-#include "testing/draw/draw.h"
+#include "verify/draw.h"
 
 namespace cistula::parity {
+
+using namespace verify;  // draws
 
 /// Collects the bits of a case's results. All NaNs count as equal: IEEE 754 leaves their sign and payload open, x86 and
 /// NVIDIA differ in them, and no image contains one.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cistula/model/scene_view.h"
-#include "testing/draw/draw.h"
+#include "testing/parity/function_case.h"
 
 namespace cistula::parity {
 

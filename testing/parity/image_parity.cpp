@@ -4,14 +4,14 @@
 
 #include <vector>
 
-#include "apps/common/golden.h"
 #include "backend_cuda/host/cuda_renderer.h"
 #include "backend_embree/embree/embree_renderer.h"
 #include "cistula/model/effects.h"
 #include "render/record/film_difference.h"
 #include "scene/readers/read_scene.h"
-#include "testing/generated_scene.h"
+#include "testing/support/golden.h"
 #include "testing/support/golden_suite.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::bench {
 namespace {

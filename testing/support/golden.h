@@ -1,4 +1,4 @@
-// The golden images: how tests render and compare them.
+// The golden images: their settings, and how tests render and compare them.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,51 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/common/golden.h"
 #include "backend_embree/embree/embree_renderer.h"
 #include "render/record/film_difference.h"
 #include "render/record/film_picture.h"
+#include "render/renderer.h"
+#include "scene/description/camera_path.h"
+#include "scene/description/description.h"
 #include "scene/readers/read_scene.h"
-#include "testing/reference_renderers.h"
+#include "verify/reference_renderers.h"
 
 namespace cistula::golden {
+
+/// Largest size in pixels; smaller films keep theirs.
+inline constexpr int width = 320, height = 180;
+
+/// The names of all scenes in a folder and its subfolders, sorted: "benchmark" for benchmark.json, "hard/slivers" for
+/// hard/slivers.json.
+inline std::vector<std::string> scene_names(const std::filesystem::path& scenes) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(scenes))
+        if (entry.path().extension() == ".json")
+            names.push_back(entry.path().lexically_relative(scenes).replace_extension().generic_string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+inline FrameSettings settings_for(const SceneDescription& scene) {
+    FrameSettings settings;
+    settings.set_size(std::min(width, scene.film.width), std::min(height, scene.film.height));
+    settings.depth = scene.depth;
+    settings.cutoff = scene.cutoff;
+    return settings;
+}
+
+inline OutputChannels channels() {
+    OutputChannels channels;
+    channels.error = channels.id = channels.z = channels.normal = channels.coverage = true;
+    return channels;
+}
+
+inline Film render_with(Renderer& renderer, const SceneDescription& description, const FrameSettings& settings) {
+    Film film;
+    RenderProgress progress;
+    renderer.render(camera_at(description.camera, 0), settings, film, progress);
+    return film;
+}
 
 template <class Real>
 Film render_embree(const SceneDescription& description, const EmbreeOptions& options = {}) {

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/error.h"
+#include "apps/common/command_line.h"
 #include "testing/support/endless_scene.h"
 #include "testing/support/run_program.h"
 

@@ -34,7 +34,7 @@ class RunningProgram {
         std::vector<char*> argv{const_cast<char*>(program.c_str())};
         for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
         argv.push_back(nullptr);
-        put_bytes(streams_.file("error"), "");
+        for (const char* stream : {"out", "error"}) put_bytes(streams_.file(stream), "");
         const std::string in = streams_.file("in"), out = streams_.file("out"), error = streams_.file("error");
         child_ = fork();
         if (child_ < 0) throw std::runtime_error("cannot fork");
@@ -61,6 +61,7 @@ class RunningProgram {
     RunningProgram(const RunningProgram&) = delete;
     RunningProgram& operator=(const RunningProgram&) = delete;
 
+    std::string output_so_far() const { return bytes_of(streams_.file("out")); }
     std::string error_so_far() const { return bytes_of(streams_.file("error")); }
 
     void send(int signal_number) const { ::kill(child_, signal_number); }

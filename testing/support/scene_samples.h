@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "apps/common/command_line.h"
 #include "scene/description/description.h"
-#include "testing/generated_mesh.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula::samples {
 
@@ -72,8 +72,8 @@ void expect_error(const Run& run, ExitCode code, const std::string& part) {
         run();
         ADD_FAILURE() << "no error that says: " << part;
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), code);
-        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+        EXPECT_EQ(exit_code(error.kind()), code);
+        EXPECT_NE(with_options(error.what()).find(part), std::string::npos) << error.what();
     }
 }
 

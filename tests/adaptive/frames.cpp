@@ -8,11 +8,11 @@
 #include "render/frame/frame_view.h"
 #include "render/record/film_difference.h"
 #include "scene/description/without_effect.h"
-#include "testing/generated_scene.h"
-#include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/reference_renderers.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 

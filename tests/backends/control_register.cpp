@@ -8,10 +8,10 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "base/error.h"
-#include "render/frame_settings.h"
 #include "render/record/film_picture.h"
-#include "testing/reference_renderers.h"
+#include "render/renderer.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/reference_renderers.h"
 
 using namespace cistula;
 

@@ -10,10 +10,10 @@
 #include "render/frame/frame_view.h"
 #include "scene/compile/constant_scene.h"
 #include "scene/description/without_effect.h"
-#include "testing/generated_scene.h"
-#include "testing/support/contact_search.h"
+#include "testing/support/contacts/contact_search.h"
 #include "testing/support/golden.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 

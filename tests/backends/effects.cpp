@@ -9,10 +9,10 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/materials/required_effects.h"
 #include "scene/description/without_effect.h"
-#include "testing/generated_scene.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 

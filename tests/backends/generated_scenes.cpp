@@ -17,9 +17,9 @@
 #include "scene/description/camera_path.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
-#include "testing/generated_scene.h"
-#include "testing/reference_renderers.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/reference_renderers.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 using glm::dvec3;

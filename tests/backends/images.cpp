@@ -16,10 +16,10 @@
 #include "cistula/numerics/fixed_sum.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/description/platonic.h"
-#include "testing/generated_mesh.h"
-#include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/reference_renderers.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 

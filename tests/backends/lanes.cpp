@@ -10,12 +10,12 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "cistula/geometry/ray.h"
-#include "testing/generated_scene.h"
 #include "testing/support/endless_scene.h"
-#include "testing/support/film_layers.h"
 #include "testing/support/golden.h"
+#include "testing/support/pictures/film_layers.h"
 #include "testing/support/read_text.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 

@@ -3,12 +3,12 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "scene/description/camera_path.h"
-#include "testing/generated_scene.h"
-#include "testing/reference_renderers.h"
-#include "testing/support/film_layers.h"
 #include "testing/support/golden.h"
+#include "testing/support/pictures/film_layers.h"
 #include "testing/support/scene.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/reference_renderers.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 

@@ -4,10 +4,10 @@
 
 #include <iostream>
 
-#include "testing/generated_scene.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 using glm::dvec3;

@@ -5,9 +5,9 @@
 
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/scene_names.h"
-#include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene_samples.h"
+#include "verify/reference_renderers.h"
 
 namespace cistula {
 namespace {

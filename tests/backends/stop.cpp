@@ -4,9 +4,9 @@
 #include "backend_embree/embree/embree_renderer.h"
 #include "render/record/film_difference.h"
 #include "scene/compile/compiled_scene.h"
-#include "testing/reference_renderers.h"
 #include "testing/support/endless_scene.h"
 #include "testing/support/stopping.h"
+#include "verify/reference_renderers.h"
 
 namespace cistula {
 namespace {

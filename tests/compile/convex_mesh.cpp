@@ -1,14 +1,14 @@
 // Which closed meshes are given by planes, and which planes (docs/rules.md, 3).
-#include "scene/compile/meshes/convex_mesh.h"
+#include "scene/compile/solids/placed_bodies.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "scene/compile/solids/solid_planes.h"
-#include "testing/generated_mesh.h"
+#include "scene/compile/solids/compile_solids.h"
 #include "testing/support/scene.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/compile/meshes/clusters.h"
 #include "testing/support/scene_samples.h"
 
 namespace cistula {

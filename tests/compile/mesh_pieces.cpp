@@ -9,8 +9,8 @@
 
 #include "pieces_of.h"
 #include "scene/compile/scene_source.h"
-#include "testing/generated_mesh.h"
 #include "testing/support/scene.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "render/frame/frame_view.h"
 #include "scene/description/camera_path.h"
-#include "testing/support/ideal_contact.h"
+#include "testing/support/contacts/ideal_contact.h"
 
 namespace cistula {
 namespace {

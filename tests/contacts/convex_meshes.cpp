@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "testing/support/film_of_all.h"
+#include "testing/support/pictures/film_of_all.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {

@@ -1,6 +1,6 @@
 // Lines into the corner of a pane and a floor, beside a cube that stands on the one and at the other: each meets the
 // pane once, whichever of the two comes first (docs/rules.md, 11, line 11).
-#include "testing/support/contact_walk.h"
+#include "testing/support/contacts/contact_walk.h"
 
 namespace cistula {
 namespace {

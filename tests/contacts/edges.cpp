@@ -1,6 +1,6 @@
 // Ray trees in scenes of bodies that touch along an edge alone: no two of their faces lie in one plane there, so that
 // nothing is shared (docs/rules.md, 11).
-#include "testing/support/contact_walk.h"
+#include "testing/support/contacts/contact_walk.h"
 
 namespace cistula {
 namespace {

@@ -1,6 +1,6 @@
 // Ray trees in scenes of closed meshes that are not convex and stand on, lie on and touch sheets, solids and one
 // another.
-#include "testing/support/contact_walk.h"
+#include "testing/support/contacts/contact_walk.h"
 
 namespace cistula {
 namespace {

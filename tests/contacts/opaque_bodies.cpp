@@ -7,8 +7,8 @@
 
 #include "cistula/transport/next_surface.h"
 #include "render/frame/frame_view.h"
-#include "testing/support/film_of_all.h"
-#include "testing/support/ideal_contact.h"
+#include "testing/support/contacts/ideal_contact.h"
+#include "testing/support/pictures/film_of_all.h"
 
 namespace cistula {
 namespace {

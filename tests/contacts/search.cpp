@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "render/record/film_picture.h"
-#include "testing/support/contact_search.h"
-#include "testing/support/film_of_all.h"
+#include "testing/support/contacts/contact_search.h"
+#include "testing/support/pictures/film_of_all.h"
 
 namespace cistula {
 namespace {

@@ -1,6 +1,6 @@
 // Ray trees in scenes of cubes and sheets that stand on, lie on and touch one another: every line is inside the bodies
 // that it should be inside, no sheet is passed, and shadow rays cross what lies in their way.
-#include "testing/support/contact_walk.h"
+#include "testing/support/contacts/contact_walk.h"
 
 namespace cistula {
 namespace {

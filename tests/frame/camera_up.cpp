@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "scene/description/camera_path.h"
-#include "scene/description/camera_turns.h"
 #include "scene/readers/read_scene.h"
 #include "testing/support/expect_near.h"
 #include "testing/support/scene_samples.h"

@@ -7,11 +7,11 @@
 #include "cistula/traversal/bvh.h"
 #include "render/frame/frame_hints.h"
 #include "render/frame/frame_view.h"
-#include "testing/generated_scene.h"
 #include "testing/support/camera.h"
 #include "testing/support/golden.h"
 #include "testing/support/scene.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 

@@ -23,9 +23,9 @@ inline void check_line(const std::string& text) {
     require(!text.empty() && one_line(text) == text);
 }
 
-/// Aborts unless an error is one line for the user, with this exit code.
-inline void check_error(const Error& error, ExitCode code) {
-    require(error.code() == code);
+/// Aborts unless an error is one line for the user, of this kind.
+inline void check_error(const Error& error, ErrorKind kind) {
+    require(error.kind() == kind);
     check_line(error.what());
 }
 

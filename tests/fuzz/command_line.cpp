@@ -1,5 +1,4 @@
-// Command lines, one word a line. The first line is the program's name: render, render-compare, render-view,
-// render-merge, render-farm or render-report.
+// Command lines, one word a line. The first line is the program's name: render, render-compare or render-merge.
 #include <algorithm>
 #include <string_view>
 #include <vector>
@@ -7,10 +6,7 @@
 #include "apps/common/render_options.h"
 #include "apps/render_compare/options.h"
 #include "apps/render_compare/suite_options.h"
-#include "apps/render_farm/options.h"
 #include "apps/render_merge/options.h"
-#include "apps/render_report/options.h"
-#include "apps/render_view/options.h"
 #include "checks.h"
 #include "sequence/output_name.h"
 
@@ -31,14 +27,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
             parse_suite_options(count - 1, arguments.data() + 1);
         } else if (words[0] == "render-compare") {
             parse_compare_options(count, arguments.data());
-        } else if (words[0] == "render-view") {
-            parse_view_options(count, arguments.data());
         } else if (words[0] == "render-merge") {
             parse_merge_options(count, arguments.data());
-        } else if (words[0] == "render-farm") {
-            parse_farm_options(count, arguments.data());
-        } else if (words[0] == "render-report") {
-            report::parse_report_options(count, arguments.data());
         } else {
             const RenderCommand options = parse_options(count, arguments.data());
             fuzz::require(options.frames.size() <= most_frames);
@@ -57,8 +47,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
             fuzz::require(parse_frames(format_frames(frames)) == frames);
         }
     } catch (const Error& error) {
-        fuzz::require(error.code() == ExitCode::usage || error.code() == ExitCode::device ||
-                      error.code() == ExitCode::file);
+        fuzz::require(error.kind() == ErrorKind::usage || error.kind() == ErrorKind::device ||
+                      error.kind() == ErrorKind::file);
         fuzz::check_line(error.what());
     }
     return 0;

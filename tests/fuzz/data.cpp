@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         for (const glm::vec3& texel : picture.texels)
             for (int c = 0; c < 3; ++c) fuzz::require(texel[c] >= 0 && texel[c] <= 1);
     } catch (const Error& error) {
-        fuzz::check_error(error, ExitCode::file);
+        fuzz::check_error(error, ErrorKind::file);
     }
     return 0;
 }

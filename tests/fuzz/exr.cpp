@@ -14,13 +14,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
                           static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height));
         fuzz::require(exr_is_complete(file.path()));
     } catch (const Error& error) {
-        fuzz::check_error(error, ExitCode::file);
+        fuzz::check_error(error, ErrorKind::file);
     }
     try {
         const ColorPicture picture = read_exr_texture(file.path());
         fuzz::require(picture.texels.size() == static_cast<size_t>(picture.width) * picture.height);
     } catch (const Error& error) {
-        fuzz::check_error(error, ExitCode::file);
+        fuzz::check_error(error, ErrorKind::file);
     }
     try {
         const StoredFile stored = read_stored_exr(file.path());
@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
                 std::visit([&](const auto& values) { fuzz::require(values.size() == picture.data.pixels()); },
                            channel.values);
     } catch (const Error& error) {
-        fuzz::check_error(error, ExitCode::file);
+        fuzz::check_error(error, ErrorKind::file);
     }
     return 0;
 }

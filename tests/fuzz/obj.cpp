@@ -2,8 +2,8 @@
 #include <cstdint>
 
 #include "mesh_checks.h"
+#include "scene/readers/meshes/mesh_formats.h"
 #include "scene/readers/meshes/mesh_text.h"
-#include "scene/readers/meshes/obj_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace cistula;
@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         fuzz::check_meshes(read_obj(utf8_of(input.substr(0, end)), "a.obj", around, warnings));
         for (const std::string& warning : warnings) fuzz::check_line(warning);
     } catch (const Error& error) {
-        fuzz::check_error(error, ExitCode::file);
+        fuzz::check_error(error, ErrorKind::file);
     }
     return 0;
 }

@@ -2,8 +2,8 @@
 #include <cstdint>
 
 #include "mesh_checks.h"
+#include "scene/readers/meshes/mesh_formats.h"
 #include "scene/readers/meshes/mesh_text.h"
-#include "scene/readers/meshes/ply_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     using namespace cistula;
@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         fuzz::check_meshes(std::move(meshes));
         for (const std::string& warning : warnings) fuzz::check_line(warning);
     } catch (const Error& error) {
-        fuzz::check_error(error, ExitCode::file);
+        fuzz::check_error(error, ErrorKind::file);
     }
     return 0;
 }

@@ -7,7 +7,6 @@
 #include "checks.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/description/camera_path.h"
-#include "scene/description/camera_turns.h"
 
 namespace cistula::fuzz {
 

@@ -7,7 +7,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     try {
         fuzz::check_scene(read_scene_text(std::string(reinterpret_cast<const char*>(data), size), "a.json", ""));
     } catch (const Error& error) {
-        fuzz::check_error(error, ExitCode::usage);
+        fuzz::check_error(error, ErrorKind::scene);
     }
     return 0;
 }

@@ -1,5 +1,5 @@
 // The text input, in either order of its parts.
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "scene_checks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         scene.textures[0].file.clear();  // a checker, which needs no file
         fuzz::check_scene(scene);
     } catch (const Error& error) {
-        fuzz::check_error(error, ExitCode::usage);
+        fuzz::check_error(error, ErrorKind::scene);
     }
     return 0;
 }

@@ -7,8 +7,8 @@
 #include "cistula/shading/surface.h"
 #include "cistula/transport/ray_tree.h"
 #include "cistula/traversal/bvh.h"
-#include "testing/generated_mesh.h"
 #include "testing/support/scene.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

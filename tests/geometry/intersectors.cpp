@@ -6,8 +6,8 @@
 #include "backend_embree/embree/embree_tree.h"
 #include "cistula/shading/snell.h"
 #include "cistula/shading/surface.h"
-#include "testing/generated_mesh.h"
 #include "testing/support/scene.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "image/exr/exr.h"
-#include "testing/reference_renderers.h"
 #include "testing/support/golden.h"
 #include "testing/support/golden_suite.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/reference_renderers.h"
 
 using namespace cistula;
 

@@ -121,7 +121,7 @@ TEST(SeedBaseline, RefusesWhatItDoesNotRender) {
         try {
             seed::make_scene(description);
         } catch (const Error& error) {
-            return error.code() == ExitCode::usage;
+            return error.kind() == ErrorKind::usage;
         }
         return false;
     };

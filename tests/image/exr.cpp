@@ -251,7 +251,7 @@ TEST(Exr, TruncatedFilesAreFound) {
                     read_exr(cut);
                 FAIL() << "no error at " << length;
             } catch (const Error& error) {
-                ASSERT_EQ(error.code(), ExitCode::file);
+                ASSERT_EQ(error.kind(), ErrorKind::file);
                 const std::string message = error.what();
                 ASSERT_EQ(message.rfind(cut + ": cannot read: ", 0), 0u) << message;
                 ASSERT_EQ(message.find('\n'), std::string::npos) << message;
@@ -295,7 +295,7 @@ TEST(Exr, DamagedFilesDoNotCrash) {
         try {
             read_exr(scratch.file("b.exr"));
         } catch (const Error& error) {
-            ASSERT_EQ(error.code(), ExitCode::file);
+            ASSERT_EQ(error.kind(), ErrorKind::file);
             ++errors;
         }
         exr_is_complete(scratch.file("b.exr"));

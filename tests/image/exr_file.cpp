@@ -7,7 +7,7 @@
 
 #include "image/exr/exr.h"
 #include "testing/support/expect_error.h"
-#include "testing/support/exr_parts.h"
+#include "testing/support/pictures/exr_parts.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
@@ -28,7 +28,7 @@ TEST(ExrFile, ReadsScanLineAndTiledParts) {
         EXPECT_EQ(file.parts()[i].name, two_parts[i].name);
         EXPECT_EQ(file.parts()[i].width, two_parts[i].width);
         EXPECT_EQ(file.parts()[i].height, two_parts[i].height);
-        EXPECT_EQ(file.parts()[i].full_height, 10);
+        EXPECT_EQ(file.parts()[i].display.height, 10);
     }
     ASSERT_EQ(file.parts()[0].channels.size(), 2u);
     EXPECT_EQ(file.parts()[0].channels[0].type, Type::float_);
@@ -63,7 +63,7 @@ TEST(ExrFile, HasTheAttributesOfItsParts) {
     const ExrFile file(scratch.file("a.exr"));
     ASSERT_EQ(file.parts().size(), 1u);
     for (const auto& [name, value] : picture.attributes) EXPECT_EQ(file.parts()[0].attributes.at(name), value) << name;
-    EXPECT_EQ(file.parts()[0].full_height, 10);
+    EXPECT_EQ(file.parts()[0].display.height, 10);
     EXPECT_EQ(file.parts()[0].channels[0].type, Type::half);
     EXPECT_EQ(file.read(0, {0})[0].values, std::vector<float>{0.5f});
 }
@@ -86,7 +86,7 @@ TEST(ExrFile, PartsThatAreCutOffAreErrors) {
             read_all();
             ADD_FAILURE() << "no error at " << size;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file) << size;
+            EXPECT_EQ(error.kind(), ErrorKind::file) << size;
         }
     }
 }

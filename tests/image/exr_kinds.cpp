@@ -13,7 +13,7 @@
 #include "image/exr/exr.h"
 #include "image/exr/exr_file.h"
 #include "testing/support/expect_error.h"
-#include "testing/support/exr_parts.h"
+#include "testing/support/pictures/exr_parts.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {

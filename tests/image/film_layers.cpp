@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cistula/numerics/fixed_sum.h"
+#include "render/record/film_channel.h"
 #include "render/record/film_picture.h"
-#include "render/record/murmur3.h"
 
 namespace cistula {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "testing/support/icc_profiles.h"
+#include "testing/support/pictures/icc_profiles.h"
 
 namespace cistula {
 namespace {

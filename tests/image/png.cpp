@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "image/color/srgb_codes.h"
-#include "image/picture/png.h"
-#include "testing/support/png_pixels.h"
+#include "image/picture/picture_io.h"
+#include "testing/support/pictures/png_pixels.h"
+#include "testing/support/pictures/srgb_codes.h"
 #include "testing/support/special_values.h"
-#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {
@@ -48,7 +48,6 @@ TEST(Png, HasNoChunksButThoseOfThePicture) {
         return names;
     };
     EXPECT_EQ(chunks(encode_png({2, 1, {{0, 0.5f, 1}, {1, 1, 1}}})), "IHDR sRGB IDAT IEND ");
-    EXPECT_EQ(chunks(encode_indexed_png(1, 1, {0}, {1, 2, 3})), "IHDR sRGB PLTE IDAT IEND ");
 }
 
 TEST(Png, HoldsEveryCode) {
@@ -61,12 +60,6 @@ TEST(Png, HoldsEveryCode) {
     }
     EXPECT_EQ(decoded(encode_png(picture), 256, 1), codes);
     for (const uint8_t code : codes) EXPECT_EQ(srgb8_to_linear(code), linear_from_srgb8(code));
-}
-
-TEST(Png, IndexedOnesHoldTheirColors) {
-    const std::vector<uint8_t> colors{10, 20, 30, 250, 128, 7, 0, 0, 1};
-    EXPECT_EQ(decoded(encode_indexed_png(2, 2, {2, 0, 1, 1}, colors), 2, 2),
-              (std::vector<uint8_t>{0, 0, 1, 10, 20, 30, 250, 128, 7, 250, 128, 7}));
 }
 
 TEST(Png, SaysWhatLibpngSays) {

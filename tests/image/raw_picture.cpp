@@ -8,9 +8,9 @@
 #include "cistula/numerics/elementary.h"
 #include "image/color/srgb_codes.h"
 #include "testing/support/expect_error.h"
+#include "testing/support/pictures/srgb_codes.h"
 #include "testing/support/scratch_directory.h"
 #include "testing/support/special_values.h"
-#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {
@@ -64,7 +64,7 @@ TEST(RawPicture, Errors) {
         try {
             read_raw_picture(path);
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file);
+            EXPECT_EQ(error.kind(), ErrorKind::file);
             const std::string start = path + ": cannot read: ", what = error.what();
             EXPECT_EQ(what.substr(0, start.size()), start);
             return what.substr(start.size());

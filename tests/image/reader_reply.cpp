@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "testing/support/srgb_codes.h"
+#include "testing/support/pictures/srgb_codes.h"
 
 namespace cistula {
 namespace {

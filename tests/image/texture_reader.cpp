@@ -41,7 +41,7 @@ std::string message_of(TextureReader& reader, const std::string& path) {
     try {
         reader.read(path, nullptr);
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::file);
+        EXPECT_EQ(error.kind(), ErrorKind::file);
         return error.what();
     }
     return "no error";
@@ -62,7 +62,7 @@ TEST(TextureReader, TheLimitCountsAllTexturesAndIsSeenInTheHeader) {
                       second +
                           ": cannot read: its size is 10x10, which takes 1.2e-06 GB of memory; textures may take "
                           "2.399e-06 GB, and others take 1.2e-06 GB; give a smaller one, or raise the limit "
-                          "(--max-texture-gb of render)");
+                          "(`max_texture_gb` of render)");
         }
 
     std::string bytes = bytes_of(exr);
@@ -75,7 +75,7 @@ TEST(TextureReader, TheLimitCountsAllTexturesAndIsSeenInTheHeader) {
     EXPECT_EQ(message_of(reader, exr),
               exr +
                   ": cannot read: its size is 60000x60000, which takes 43.2 GB of memory; textures may take 1 GB; give "
-                  "a smaller one, or raise the limit (--max-texture-gb of render)");
+                  "a smaller one, or raise the limit (`max_texture_gb` of render)");
 }
 
 TEST(TextureReader, OnlyFilesAreRead) {

@@ -9,7 +9,7 @@
 #include "cistula/lanes/lane_shadow.h"
 #include "cistula/lanes/lane_sums.h"
 #include "cistula/lanes/lane_surface.h"
-#include "testing/draw/draw.h"
+#include "verify/draw.h"
 
 using namespace cistula;
 
@@ -62,7 +62,7 @@ class LanesTest : public ::testing::Test {
         ASSERT_EQ(found.bits(), bits) << what;
     }
 
-    parity::Draw draw_{1, 38};
+    verify::Draw draw_{1, 38};
 };
 
 using Reals = ::testing::Types<float, double>;

@@ -38,6 +38,7 @@ run(bash "${source}/installed.sh" "${prefix}")
 
 build("${source}" build)
 run("${work}/build/headers")
+run("${work}/build/verify")
 set(PREFIX "${prefix}")
 set(WORK "${work}/refused")
 include("${source}/refused.cmake")

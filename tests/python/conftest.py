@@ -1,8 +1,16 @@
 """What the tests of the Python package share. ctest names the build in the environment."""
+from __future__ import annotations
+
+import json
 import os
+import subprocess
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+os.environ.setdefault("PYTHONWARNINGS", "default")
 
 
 @pytest.fixture(scope="session")
@@ -15,3 +23,17 @@ def source() -> Path:
 def programs() -> Path:
     """The folder with render and the other programs."""
     return Path(os.environ["CISTULA_BUILD"]) / "bin"
+
+
+@pytest.fixture
+def render(programs: Path, tmp_path: Path) -> Callable[..., dict[str, Any]]:
+    """Runs render with these options, the image into a file.exr of tmp_path, and returns the entry of its stats."""
+
+    def run(scene: Path, *options: str) -> dict[str, Any]:
+        stats = tmp_path / "stats.json"
+        command = [str(programs / "render"), str(scene), "-q", "-o", str(tmp_path / "file.exr"), "--stats", str(stats), *options]
+        assert subprocess.run(command, check=False).returncode in (0, 5)  # 5: a target error was missed
+        entry: dict[str, Any] = json.loads(stats.read_text())["benchmarks"][0]
+        return entry
+
+    return run

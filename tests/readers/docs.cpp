@@ -8,7 +8,7 @@
 
 #include "scene/readers/json_reader.h"
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "scene/readers/scene_keys.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/schema_keys.h"

@@ -10,10 +10,10 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/meshes/mesh_pieces.h"
 #include "scene/readers/meshes/polygon.h"
-#include "testing/generated_mesh.h"
 #include "testing/support/read_text.h"
 #include "testing/support/scene_samples.h"
 #include "testing/support/scratch_directory.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

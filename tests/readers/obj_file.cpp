@@ -1,4 +1,4 @@
-#include "scene/readers/meshes/obj_file.h"
+#include "scene/readers/meshes/mesh_formats.h"
 
 #include <map>
 

@@ -1,4 +1,4 @@
-#include "scene/readers/meshes/ply_file.h"
+#include "scene/readers/meshes/mesh_formats.h"
 
 #include <bit>
 #include <cstring>

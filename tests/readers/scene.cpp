@@ -8,7 +8,7 @@
 #include <iostream>
 #include <sstream>
 
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "testing/support/read_text.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"

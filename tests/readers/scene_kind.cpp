@@ -5,7 +5,7 @@
 #include <streambuf>
 
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scratch_directory.h"
 
@@ -71,7 +71,7 @@ TEST(SceneKind, OtherFilesAreNamedForWhatTheyAre) {
             read_unnamed(bytes);
             ADD_FAILURE() << "no error: " << name;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::usage);
+            EXPECT_EQ(error.kind(), ErrorKind::scene);
             EXPECT_TRUE(std::string(error.what()).starts_with("a: is "s + name + "; ")) << error.what();
         }
     }
@@ -120,7 +120,7 @@ TEST(SceneKind, InputWithoutAnEndIsRefused) {
             read_scene("-");
             ADD_FAILURE() << what;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::usage);
+            EXPECT_EQ(error.kind(), ErrorKind::scene);
             EXPECT_TRUE(std::string(error.what()).starts_with("standard input" + what)) << error.what();
         }
         std::cin.rdbuf(before);

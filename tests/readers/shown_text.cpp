@@ -89,7 +89,7 @@ TEST(ShownText, AnyBytesBecomeALineOfCharactersThatStaysAsItIs) {
 }
 
 TEST(ShownText, MessagesAreCutInTheirMiddle) {
-    const Error error(ExitCode::file, std::string(100000, 'a') + "\n" + std::string(100000, 'b'));
+    const Error error(ErrorKind::file, std::string(100000, 'a') + "\n" + std::string(100000, 'b'));
     const std::string message = error.what();
     EXPECT_EQ(message.size(), 4005u);
     EXPECT_TRUE(message.starts_with("aaa") && message.ends_with("bbb")) << message;
@@ -98,7 +98,7 @@ TEST(ShownText, MessagesAreCutInTheirMiddle) {
     for (int i = 0; i < 4001; ++i) long_name += "\xc3\xa4";
     EXPECT_EQ(message_line(long_name).size(), 2 * 4000u + 5);
     EXPECT_EQ(message_line(long_name.substr(2)), long_name.substr(2));
-    EXPECT_STREQ(Error(ExitCode::file, "a\x1b[2Jb: cannot\nbe").what(), "a\\x1b[2Jb: cannot\\nbe");
+    EXPECT_STREQ(Error(ErrorKind::file, "a\x1b[2Jb: cannot\nbe").what(), "a\\x1b[2Jb: cannot\\nbe");
 }
 
 }  // namespace

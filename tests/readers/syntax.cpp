@@ -6,7 +6,7 @@
 #include "base/suggest.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "testing/support/read_text.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"
@@ -152,7 +152,7 @@ TEST(SceneSyntax, MangledTextsAreReadOrRefusedOnOneLine) {
                 json_scene(text);
             } catch (const Error& error) {
                 const std::string message = error.what();
-                EXPECT_EQ(error.code(), ExitCode::usage);
+                EXPECT_EQ(error.kind(), ErrorKind::scene);
                 EXPECT_TRUE(message.starts_with("a.json:")) << message;
                 EXPECT_LT(message.size(), 1000u) << message;
                 for (const char c : message) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << message;

@@ -9,7 +9,7 @@
 #include "scene/description/camera_path.h"
 #include "scene/description/platonic.h"
 #include "scene/readers/read_scene.h"
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"
@@ -239,7 +239,7 @@ TEST(TextInput, EveryShorterInputSaysWhatIsMissing) {
             ADD_FAILURE() << "read without its last " << words + 1 << " words";
         } catch (const Error& error) {
             const std::string message = error.what();
-            EXPECT_EQ(error.code(), ExitCode::usage);
+            EXPECT_EQ(error.kind(), ErrorKind::scene);
             EXPECT_TRUE(message.ends_with("found the end of the input")) << message;
             EXPECT_NE(message, last);
             last = message;

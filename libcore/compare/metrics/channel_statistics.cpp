@@ -63,8 +63,10 @@ void add_statistics(ChannelStatistics& result, const Values& first, const Placed
     double sum = 0, squares = 0, relative = 0, peak = std::max(largest, 1.0);
     bool is_placed = false;
     for_each_pixel(region, [&](int x, int y, size_t i) {
-        const auto p = first[a.data.index(x, y)], q = second[b.data.index(x, y)];
-        const auto p_value = static_cast<double>(p), q_value = static_cast<double>(q);
+        const auto p = first[a.data.index(x, y)];
+        const auto q = second[b.data.index(x, y)];
+        const auto p_value = static_cast<double>(p);
+        const auto q_value = static_cast<double>(q);
         const bool is_equal = bits_of(p) == bits_of(q);
         const double d = is_equal ? 0 : difference(p_value, q_value);
         worst_of_pixels[i] = std::max(worst_of_pixels[i], d);

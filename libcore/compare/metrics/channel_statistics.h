@@ -1,4 +1,4 @@
-// Differences between two channels.
+// Differences between two channels, and their structural similarity.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,8 @@ enum class DifferenceUnit {
 /// Differences in a channel that both files have.
 struct ChannelStatistics {
     std::string name;
-    StoredType first_type = StoredType::float_, second_type = StoredType::float_;
+    StoredType first_type = StoredType::float_;
+    StoredType second_type = StoredType::float_;
     size_t values = 0;     // compared
     size_t differing = 0;  // with different bits
     size_t infinite = 0;   // infinite differences; included in max, excluded from mean, rmse, psnr and relative_mse
@@ -37,7 +38,8 @@ struct ChannelStatistics {
     std::optional<double> ssim;  // where it was asked for, and is defined
     int x = 0, y = 0;            // largest difference, or first value with different bits; in pixel space
     double a = 0, b = 0;         // the two values there
-    uint64_t a_bits = 0, b_bits = 0;
+    uint64_t a_bits = 0;
+    uint64_t b_bits = 0;
 
     DifferenceUnit unit() const;
 };
@@ -55,5 +57,12 @@ ChannelStatistics statistics_of(const PlacedChannel& a, const PlacedChannel& b, 
 
 /// The differences of all pixels of the region's window; 0 where they do not count.
 std::vector<float> differences_of(const PlacedChannel& a, const PlacedChannel& b, const Region& region);
+
+/// SSIM of two channels: Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli, "Image quality assessment: from error
+/// visibility to structural similarity", IEEE Trans. Image Processing 13(4), 2004; windows of 11x11 pixels with a
+/// Gaussian of 1.5 pixels, K1 = 0.01, K2 = 0.03, the mean over all windows that lie in the region, with all pixels.
+/// Codes are compared as fractions of their largest; other values as the 8-bit sRGB codes of a preview, so the dynamic
+/// range L is 1. None for channels that are neither codes nor R, G, B, or Y alone, and for regions without a window.
+std::optional<double> ssim_of(const PlacedChannel& a, const PlacedChannel& b, const Region& region);
 
 }  // namespace cistula

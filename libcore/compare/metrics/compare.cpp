@@ -12,9 +12,7 @@
 #include "base/option_text.h"
 #include "base/suggest.h"
 #include "compare/metrics/channel_statistics.h"
-#include "compare/metrics/header_differences.h"
 #include "compare/metrics/picture_pairs.h"
-#include "compare/metrics/ssim.h"
 #include "image/picture/picture.h"
 #include "render/record/frame_header.h"
 
@@ -47,22 +45,25 @@ std::string unit_text(const ChannelStatistics& channel) {
 /// A comparison in work.
 class Comparer {
   public:
-    Comparer(const StoredFile& a, const StoredFile& b, const Selection& selection)
-        : a_(a), b_(b), selection_(selection), pairs_(pair_pictures(a, b)) {}
+    Comparer(const StoredFile& a, const StoredFile& b, const Selection& selection, const Thresholds& thresholds)
+        : a_(a), b_(b), selection_(selection), thresholds_(thresholds), pairs_(pair_pictures(a, b)) {}
 
-    Comparison compare(const Thresholds& thresholds) {
+    Comparison compare(StopSignal stop) {
         check_layers();
-        append(result_.structure, pairs_.unpaired);
+        for (const LonePicture& lone : pairs_.unpaired) add_lone(lone);
         result_.compares_headers = a_.format == b_.format;
         if (!result_.compares_headers)
             result_.not_compared.push_back(
                 fmt::format("attributes, which {} and {} do not have in common", a_.format, b_.format));
         for (const PicturePair& pair : pairs_.pairs) compare_pair(pair);
+        if (selection_.common_channels && result_.channels.empty() && result_.structure.empty())
+            result_.structure.push_back("no channel is in both");
         if (pairs_.is_other_order) result_.not_compared.push_back("the order of parts");
         if (!left_out_.empty())
-            result_.not_compared.push_back(fmt::format("{} channel{} that --layers leaves out: {}", left_out_.size(),
+            result_.not_compared.push_back(fmt::format("{} channel{} that `layers` leaves out: {}", left_out_.size(),
                                                        left_out_.size() == 1 ? "" : "s", fmt::join(left_out_, ", ")));
-        count_pixels(thresholds);
+        count_pixels();
+        if (selection_.flip || thresholds_.flip) result_.flip = flip_of(a_, b_, selection_, stop);
         return std::move(result_);
     }
 
@@ -78,11 +79,25 @@ class Comparer {
         return is_selected(selection_.layers, channel.name, name_in_part(pair.part, channel.name));
     }
 
+    /// What only one file has: a difference where it is chosen.
+    void add_alone(const std::string& line) {
+        (selection_.common_channels ? result_.not_compared : result_.structure).push_back(line);
+    }
+
+    void add_lone(const LonePicture& lone) {
+        const auto& channels = lone.picture.a->channels;
+        if (channels.empty() || std::any_of(channels.begin(), channels.end(), [&](const StoredChannel& channel) {
+                return is_chosen(lone.picture, channel);
+            }))
+            return add_alone(lone.line);
+        for (const StoredChannel& channel : channels) left_out_.push_back(lone.picture.shown(channel.name));
+    }
+
     /// Throws for a pattern that fits no channel of either file.
     void check_layers() const {
         std::set<std::string> names;
         std::set<std::string> fitting;  // patterns
-        for (const PicturePair& pair : pairs_.pairs)
+        const auto look_at = [&](const PicturePair& pair) {
             for (const StoredPicture* picture : {pair.a, pair.b})
                 for (const StoredChannel& channel : picture->channels) {
                     const std::string shown = name_in_part(pair.part, channel.name);
@@ -90,10 +105,13 @@ class Comparer {
                     for (const std::string& pattern : selection_.layers)
                         if (is_selected({pattern}, channel.name, shown)) fitting.insert(pattern);
                 }
+        };
+        for (const PicturePair& pair : pairs_.pairs) look_at(pair);
+        for (const LonePicture& lone : pairs_.unpaired) look_at(lone.picture);
         for (const std::string& pattern : selection_.layers)
             if (fitting.count(pattern) == 0)
-                fail_usage(fmt::format("--layers {}: no channel has such a name; {}", pattern,
-                                       nearest_first(pattern, {names.begin(), names.end()}, "channels")));
+                fail_usage(fmt::format("`layers` {}: no channel has such a name", pattern),
+                           nearest_first(pattern, {names.begin(), names.end()}, "channels"));
     }
 
     void compare_windows(const PicturePair& pair) {
@@ -129,7 +147,7 @@ class Comparer {
             }
             const StoredChannel* other = pair.b->channel(channel.name);
             if (!other) {
-                result_.structure.push_back(fmt::format("channel {}: only in the first", pair.shown(channel.name)));
+                add_alone(fmt::format("channel {}: only in the first", pair.shown(channel.name)));
                 continue;
             }
             if (const std::string line = differing_type(pair, channel, *other); !line.empty())
@@ -139,7 +157,7 @@ class Comparer {
         for (const StoredChannel& channel : pair.b->channels) {
             if (pair.a->channel(channel.name)) continue;
             if (is_chosen(pair, channel))
-                result_.structure.push_back(fmt::format("channel {}: only in the second", pair.shown(channel.name)));
+                add_alone(fmt::format("channel {}: only in the second", pair.shown(channel.name)));
             else
                 left_out_.push_back(pair.shown(channel.name));
         }
@@ -150,7 +168,8 @@ class Comparer {
         if (pixels.worst.empty()) pixels = {region, std::vector<double>(region.window.pixels())};
         ChannelStatistics statistics = statistics_of({a, pair.a->data}, {b, pair.b->data}, region, pixels.worst);
         statistics.name = pair.shown(a.name);
-        if (selection_.ssim) statistics.ssim = ssim_of({a, pair.a->data}, {b, pair.b->data}, region);
+        if (selection_.ssim || thresholds_.ssim)
+            statistics.ssim = ssim_of({a, pair.a->data}, {b, pair.b->data}, region);
         result_.max = std::max(result_.max, statistics.max);
         const std::string unit = unit_text(statistics);
         if (!unit.empty() && std::find(result_.units.begin(), result_.units.end(), unit) == result_.units.end())
@@ -158,18 +177,19 @@ class Comparer {
         result_.channels.push_back(std::move(statistics));
     }
 
-    void count_pixels(const Thresholds& thresholds) {
+    void count_pixels() {
         for (const auto& [place, pixels] : pixels_) {
             result_.pixels += pixels.region.pixels();
             for (const double worst : pixels.worst) {  // 0 where a pixel does not count
-                if (thresholds.fail && worst > *thresholds.fail) ++result_.over_fail;
-                if (thresholds.hardfail && worst > *thresholds.hardfail) ++result_.over_hardfail;
+                if (thresholds_.fail && worst > *thresholds_.fail) ++result_.over_fail;
+                if (thresholds_.hardfail && worst > *thresholds_.hardfail) ++result_.over_hardfail;
             }
         }
     }
 
     const StoredFile &a_, &b_;
     const Selection& selection_;
+    const Thresholds& thresholds_;
     const PicturePairs pairs_;
     Comparison result_;
     std::vector<std::string> left_out_;
@@ -197,18 +217,29 @@ bool Comparison::has_only_floats() const {
     });
 }
 
-Comparison compare_files(const StoredFile& a, const StoredFile& b, const Thresholds& thresholds,
-                         const Selection& selection) {
-    return Comparer(a, b, selection).compare(thresholds);
+std::optional<double> Comparison::least_ssim() const {
+    std::optional<double> least;
+    for (const ChannelStatistics& channel : channels)
+        if (channel.ssim) least = std::min(least.value_or(*channel.ssim), *channel.ssim);
+    return least;
 }
 
-Comparison compare_pictures(const LayeredPicture& a, const LayeredPicture& b, const Thresholds& thresholds) {
-    return compare_files(stored_file(a), stored_file(b), thresholds);
+Comparison compare_files(const StoredFile& a, const StoredFile& b, const Thresholds& thresholds,
+                         const Selection& selection, StopSignal stop) {
+    return Comparer(a, b, selection, thresholds).compare(stop);
+}
+
+Comparison compare_pictures(const LayeredPicture& a, const LayeredPicture& b, const Thresholds& thresholds,
+                            const Selection& selection, StopSignal stop) {
+    return compare_files(stored_file(a), stored_file(b), thresholds, selection, stop);
 }
 
 bool passes(const Comparison& comparison, const Thresholds& thresholds) {
     if (!comparison.structure.empty()) return false;
     if (!thresholds.any()) return comparison.differing() == 0 && comparison.header.empty();
+    const FlipResult* const flip = comparison.flip ? &*comparison.flip : nullptr;
+    if (thresholds.flip && !(flip && flip->absent.empty() && flip->mean <= *thresholds.flip)) return false;
+    if (thresholds.ssim && !(comparison.least_ssim() >= thresholds.ssim)) return false;
     return static_cast<double>(comparison.over_fail) * 100 <=
                thresholds.failpercent * static_cast<double>(comparison.pixels) &&
            comparison.over_hardfail == 0;

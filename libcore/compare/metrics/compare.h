@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compare/metrics/channel_statistics.h"
+#include "compare/metrics/flip.h"
 #include "compare/metrics/selection.h"
 #include "image/picture/picture.h"
 #include "image/picture/stored_picture.h"
@@ -19,8 +20,10 @@ struct Thresholds {
     std::optional<double> fail;      // a pixel fails if a channel differs by more
     double failpercent = 0;          // percentage of pixels that may fail
     std::optional<double> hardfail;  // no pixel may differ by more
+    std::optional<double> flip;      // the mean of FLIP may be no more
+    std::optional<double> ssim;      // of no channel it may be less
 
-    bool any() const { return fail || hardfail; }
+    bool any() const { return fail || hardfail || flip || ssim; }
 };
 
 struct Comparison {
@@ -31,20 +34,24 @@ struct Comparison {
     std::vector<std::string> units;           // what differences are counted in, where that is no plain number
     std::vector<ChannelStatistics> channels;  // of pictures with pixels in common
     size_t pixels = 0;  // that count; pixels of parts with one window are one pixel, as channels of one part are
-    size_t over_fail = 0, over_hardfail = 0;
+    size_t over_fail = 0;
+    size_t over_hardfail = 0;
     double max = 0;
+    std::optional<FlipResult> flip;  // where it was asked for
 
     size_t values() const;     // compared, in all channels
     size_t differing() const;  // those with different bits
     bool has_only_floats() const;
+    std::optional<double> least_ssim() const;  // of the channels that have one
 };
 
-/// Parts are matched by their names where all have one, else by their order. Throws Error (usage) for a selection that
-/// fits neither file.
+/// Parts are matched by their names where all have one, else by their order. Metrics that the selection or a threshold
+/// asks for are taken. Throws Error: `usage` for a selection that fits neither file, `interrupted`.
 Comparison compare_files(const StoredFile& a, const StoredFile& b, const Thresholds& thresholds,
-                         const Selection& selection = {});
+                         const Selection& selection = {}, StopSignal stop = {});
 
-Comparison compare_pictures(const LayeredPicture& a, const LayeredPicture& b, const Thresholds& thresholds);
+Comparison compare_pictures(const LayeredPicture& a, const LayeredPicture& b, const Thresholds& thresholds,
+                            const Selection& selection = {}, StopSignal stop = {});
 
 /// Whether the differences are within the thresholds; without thresholds, whether the pictures are bitwise equal.
 bool passes(const Comparison& comparison, const Thresholds& thresholds);

@@ -1,36 +1,24 @@
 #include "compare/metrics/flip.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
-#include <spawn.h>
-#include <stdlib.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
-#include <atomic>
-#include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <stdexcept>
-#include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/atomic_file.h"
-#include "base/file_bytes.h"
+#include "compare/metrics/command.h"
 #include "compare/metrics/picture_pairs.h"
 #include "image/color/srgb_codes.h"
 #include "image/exr/exr.h"
-#include "image/picture/png.h"
+#include "image/picture/picture_io.h"
 
 namespace cistula {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* not_installed = "NVIDIA's program flip is not on PATH; pip install flip-evaluator installs it";
 
@@ -39,60 +27,17 @@ struct FlipAbsent : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A folder that goes with the object.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() : path_((fs::temp_directory_path() / "render-compare-XXXXXX").string()) {
-        if (!mkdtemp(path_.data())) throw file_error(path_, "write", errno);
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    std::string file(const std::string& name) const { return path_ + "/" + name; }
-
-  private:
-    std::string path_;
-};
-
-/// Waits for a process of our own. Once `stop` is set, the process is ended and Error (interrupted) is thrown.
-int exit_status(pid_t child, const std::atomic<bool>& stop) {
-    int status = 0;
-    while (waitpid(child, &status, WNOHANG) == 0) {  // a signal does not end a wait
-        if (stop) kill(child, SIGKILL);
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    if (stop) throw Error(ExitCode::interrupted, "interrupted while flip runs; nothing was written");
-    return status;
-}
-
 /// Runs flip of PATH and returns what it prints.
-std::string run_flip(std::vector<std::string> arguments, const std::string& output, const std::atomic<bool>& stop) {
+std::string run_flip(std::vector<std::string> arguments, const TemporaryFolder& folder, StopSignal stop) {
     arguments.insert(arguments.begin(), "flip");
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-    pid_t child = -1;
-    const int failure = posix_spawnp(&child, "flip", &files, nullptr, pointers.data(), environ);
-    posix_spawn_file_actions_destroy(&files);
-    if (failure != 0) throw FlipAbsent(not_installed);
-    const int status = exit_status(child, stop);
-    const std::string said = read_file(output);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) == 127) throw FlipAbsent(not_installed);
-    return said;
+    const std::optional<CommandEnd> end = run_command(std::move(arguments), ".", folder, stop);
+    if (!end || end->code == 127 || end->code < 0) throw FlipAbsent(not_installed);
+    return end->said;
 }
 
 /// "v1.7". Other programs have the name, too: one of Debian converts line ends.
-std::string flip_version(const TemporaryFolder& folder, const std::atomic<bool>& stop) {
-    const std::string help = run_flip({"--help"}, folder.file("help"), stop);
+std::string flip_version(const TemporaryFolder& folder, StopSignal stop) {
+    const std::string help = run_flip({"--help"}, folder, stop);
     const std::string before = "FLIP v";
     const size_t start = help.find(before);
     if (start == help.npos || help.find("--reference") == help.npos) throw FlipAbsent(not_installed);
@@ -170,12 +115,12 @@ void write_codes(const std::string& path, const StoredPicture& picture, const Co
     write_file_atomically(path, encode_png(written));
 }
 
-FlipResult measure(const StoredFile& a, const StoredFile& b, const Selection& selection,
-                   const std::atomic<bool>& stop) {
+FlipResult measure(const StoredFile& a, const StoredFile& b, const Selection& selection, StopSignal stop) {
     if (selection.mask) throw FlipAbsent("it looks at neighbors, and a mask leaves some out");
     const PicturePairs pairs = pair_pictures(a, b);
     for (const PicturePair& pair : pairs.pairs) {
-        const std::optional<Colors> first = colors_of(*pair.a), second = colors_of(*pair.b);
+        const std::optional<Colors> first = colors_of(*pair.a);
+        const std::optional<Colors> second = colors_of(*pair.b);
         if (!pair.a->is_whole() || !first || !second) continue;
         const PixelRect window = region_of(*pair.a, *pair.b, selection, pair.subject()).window;
         if (window.pixels() == 0) throw FlipAbsent("no pixel has a partner");
@@ -193,7 +138,7 @@ FlipResult measure(const StoredFile& a, const StoredFile& b, const Selection& se
         const std::string said =
             run_flip({"--reference", folder.file("reference" + end), "--test", folder.file("test" + end),
                       "--no-exposure-map", "--no-error-map", "--directory", folder.file("")},
-                     folder.file("output"), stop);
+                     folder, stop);
         result.mean = number_after(said, "Mean");
         result.median = number_after(said, "Weighted median");
         result.min = number_after(said, "Min");
@@ -205,8 +150,7 @@ FlipResult measure(const StoredFile& a, const StoredFile& b, const Selection& se
 
 }  // namespace
 
-FlipResult flip_of(const StoredFile& a, const StoredFile& b, const Selection& selection,
-                   const std::atomic<bool>& stop) {
+FlipResult flip_of(const StoredFile& a, const StoredFile& b, const Selection& selection, StopSignal stop) {
     try {
         return measure(a, b, selection, stop);
     } catch (const FlipAbsent& absent) {

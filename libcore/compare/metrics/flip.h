@@ -1,9 +1,9 @@
 // FLIP, by its reference implementation where that is installed.
 #pragma once
 
-#include <atomic>
 #include <string>
 
+#include "base/error.h"
 #include "compare/metrics/selection.h"
 #include "image/picture/stored_picture.h"
 
@@ -21,6 +21,6 @@ struct FlipResult {
 /// is the first file. P. Andersson, J. Nilsson, T. Akenine-Möller et al., "FLIP: A Difference Evaluator for Alternating
 /// Images", HPG 2020; P. Andersson, J. Nilsson, P. Shirley, T. Akenine-Möller, "Visualizing Errors in Rendered High
 /// Dynamic Range Images", Eurographics 2021.
-FlipResult flip_of(const StoredFile& a, const StoredFile& b, const Selection& selection, const std::atomic<bool>& stop);
+FlipResult flip_of(const StoredFile& a, const StoredFile& b, const Selection& selection, StopSignal stop = {});
 
 }  // namespace cistula

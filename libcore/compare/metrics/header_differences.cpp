@@ -1,4 +1,4 @@
-#include "compare/metrics/header_differences.h"
+#include "compare/metrics/picture_pairs.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,8 @@ constexpr const char* none = "(none)";
 
 /// The part of a long text around the place where it differs from another.
 std::string excerpt(const std::string& text, const std::string& other) {
-    constexpr size_t before = 20, most = 120;
+    constexpr size_t before = 20;
+    constexpr size_t most = 120;
     if (text.size() <= most) return text;
     const auto place = std::mismatch(text.begin(), text.end(), other.begin(), other.end()).first;
     const auto differs = static_cast<size_t>(place - text.begin());
@@ -26,7 +27,8 @@ std::string excerpt(const std::string& text, const std::string& other) {
 
 std::string attribute_line(const PicturePair& pair, const std::string& name, const StoredAttribute* a,
                            const StoredAttribute* b) {
-    std::string first = a ? a->text : none, second = b ? b->text : none;
+    std::string first = a ? a->text : none;
+    std::string second = b ? b->text : none;
     if (a && b && a->type != b->type) {
         first = fmt::format("{} ({})", excerpt(first, second), a->type);
         second = fmt::format("{} ({})", excerpt(second, a->text), b->type);
@@ -71,8 +73,10 @@ std::vector<std::string> differing_attributes(const PicturePair& pair) {
     for (const auto* attributes : {&first, &second})
         for (const auto& entry : *attributes) names.insert(entry.first);
     for (const std::string& name : names) {
-        const auto a = first.find(name), b = second.find(name);
-        const bool in_first = a != first.end(), in_second = b != second.end();
+        const auto a = first.find(name);
+        const auto b = second.find(name);
+        const bool in_first = a != first.end();
+        const bool in_second = b != second.end();
         if (in_first && in_second && a->second == b->second) continue;
         lines.push_back(attribute_line(pair, name, in_first ? &a->second : nullptr, in_second ? &b->second : nullptr));
     }
@@ -90,7 +94,8 @@ std::vector<std::string> differing_packing(const PicturePair& pair) {
 }
 
 std::string differing_type(const PicturePair& pair, const StoredChannel& a, const StoredChannel& b) {
-    const std::string first = type_text(a), second = type_text(b);
+    const std::string first = type_text(a);
+    const std::string second = type_text(b);
     return first == second ? "" : fmt::format("channel {}: {} / {}", pair.shown(a.name), first, second);
 }
 

@@ -49,17 +49,20 @@ std::vector<std::string> keys_of(const std::vector<Part>& parts, bool by_name) {
     return keys;
 }
 
+void add_lone(PicturePairs& result, const StoredPicture* picture, const std::string& key, const char* where) {
+    const PicturePair pair{picture, picture, key};
+    result.unpaired.push_back({pair, fmt::format("{}only in the {}", pair.subject(), where)});
+}
+
 void pair_levels(PicturePairs& result, const Part& a, const Part& b, const std::string& key) {
     for (const StoredPicture* level : a.levels) {
-        PicturePair pair{level, b.level(*level), key};
-        if (pair.b)
-            result.pairs.push_back(pair);
+        if (const StoredPicture* other = b.level(*level))
+            result.pairs.push_back({level, other, key});
         else
-            result.unpaired.push_back(pair.subject() + "only in the first");
+            add_lone(result, level, key, "first");
     }
     for (const StoredPicture* level : b.levels)
-        if (!a.level(*level))
-            result.unpaired.push_back(PicturePair{level, level, key}.subject() + "only in the second");
+        if (!a.level(*level)) add_lone(result, level, key, "second");
 }
 
 }  // namespace
@@ -71,33 +74,36 @@ std::string PicturePair::subject() const {
 }
 
 std::string PicturePair::shown(const std::string& channel) const {
-    const std::string name = name_in_part(part, channel), level = level_text(*a);
+    const std::string name = name_in_part(part, channel);
+    const std::string level = level_text(*a);
     return level.empty() ? name : fmt::format("{} ({})", name, level);
 }
 
 PicturePairs pair_pictures(const StoredFile& a, const StoredFile& b) {
-    const std::vector<Part> first = parts_of(a), second = parts_of(b);
+    const std::vector<Part> first = parts_of(a);
+    const std::vector<Part> second = parts_of(b);
     PicturePairs result;
     if (first.size() == 1 && second.size() == 1) {
         pair_levels(result, first[0], second[0], "");
         return result;
     }
     const bool by_name = has_all_names(first) && has_all_names(second);
-    const std::vector<std::string> first_keys = keys_of(first, by_name), second_keys = keys_of(second, by_name);
+    const std::vector<std::string> first_keys = keys_of(first, by_name);
+    const std::vector<std::string> second_keys = keys_of(second, by_name);
     auto last = second_keys.begin();
     for (size_t i = 0; i < first.size(); ++i) {
         const auto partner = std::find(second_keys.begin(), second_keys.end(), first_keys[i]);
         if (partner == second_keys.end()) {
-            result.unpaired.push_back(fmt::format("part {}: only in the first", first_keys[i]));
+            add_lone(result, first[i].levels.front(), first_keys[i], "first");
             continue;
         }
         result.is_other_order |= partner < last;
         last = partner;
         pair_levels(result, first[i], second[static_cast<size_t>(partner - second_keys.begin())], first_keys[i]);
     }
-    for (const std::string& key : second_keys)
-        if (std::find(first_keys.begin(), first_keys.end(), key) == first_keys.end())
-            result.unpaired.push_back(fmt::format("part {}: only in the second", key));
+    for (size_t i = 0; i < second.size(); ++i)
+        if (std::find(first_keys.begin(), first_keys.end(), second_keys[i]) == first_keys.end())
+            add_lone(result, second[i].levels.front(), second_keys[i], "second");
     return result;
 }
 

@@ -19,12 +19,12 @@ std::string counted(size_t count, const char* what) {
 
 std::string over_fail_text(const Comparison& comparison, const Thresholds& thresholds) {
     const double percent = 100.0 * static_cast<double>(comparison.over_fail) / static_cast<double>(comparison.pixels);
-    return fmt::format("{} of {} ({:.4g} %) over --fail {}, {} % allowed", comparison.over_fail,
+    return fmt::format("{} of {} ({:.4g} %) over `fail` {}, {} % allowed", comparison.over_fail,
                        counted(comparison.pixels, "pixel"), percent, *thresholds.fail, thresholds.failpercent);
 }
 
 std::string over_hardfail_text(const Comparison& comparison, const Thresholds& thresholds) {
-    return fmt::format("{} over --hardfail {}", counted(comparison.over_hardfail, "pixel"), *thresholds.hardfail);
+    return fmt::format("{} over `hardfail` {}", counted(comparison.over_hardfail, "pixel"), *thresholds.hardfail);
 }
 
 Json number(double value) {
@@ -120,11 +120,20 @@ std::string verdict(const Comparison& comparison, const Thresholds& thresholds) 
         if (thresholds.fail) parts.push_back(over_fail_text(comparison, thresholds));
         if (thresholds.hardfail) parts.push_back(over_hardfail_text(comparison, thresholds));
     }
+    if (thresholds.flip && comparison.flip)
+        parts.push_back(comparison.flip->absent.empty()
+                            ? fmt::format("FLIP {:.6f}, `failflip` {}", comparison.flip->mean, *thresholds.flip)
+                            : fmt::format("FLIP is not known: {}", comparison.flip->absent));
+    if (thresholds.ssim) {
+        const std::optional<double> least = comparison.least_ssim();
+        parts.push_back(least ? fmt::format("least SSIM {:.6f}, `failssim` {}", *least, *thresholds.ssim)
+                              : std::string("no channel has an SSIM"));
+    }
     return fmt::format("{}: {}", passes(comparison, thresholds) ? "within the thresholds" : "differ",
                        fmt::join(parts, "; "));
 }
 
-std::string report_text(const Comparison& comparison, const Thresholds& thresholds, const FlipResult* flip) {
+std::string report_text(const Comparison& comparison, const Thresholds& thresholds) {
     std::string text;
     const auto say = [&](const char* before, const std::vector<std::string>& lines) {
         for (const std::string& line : lines) text += before + one_line(line) + "\n";
@@ -134,12 +143,12 @@ std::string report_text(const Comparison& comparison, const Thresholds& threshol
     say("not compared: ", comparison.not_compared);
     say("", comparison.units);
     text += channel_table(comparison);
-    if (flip) text += one_line(flip_text(*flip)) + "\n";
+    if (comparison.flip) text += one_line(flip_text(*comparison.flip)) + "\n";
     return text + verdict(comparison, thresholds) + "\n";
 }
 
-Json report_json(const Comparison& comparison, const Thresholds& t, const std::string& first, const std::string& second,
-                 const FlipResult* flip) {
+Json report_json(const Comparison& comparison, const Thresholds& t, const std::string& first,
+                 const std::string& second) {
     Json channels = Json::array();
     for (const ChannelStatistics& channel : comparison.channels) channels.push_back(channel_json(channel));
     return {{"first", first},
@@ -149,7 +158,9 @@ Json report_json(const Comparison& comparison, const Thresholds& t, const std::s
             {"thresholds",
              {{"fail", optional_number(t.fail)},
               {"failpercent", t.fail ? Json(t.failpercent) : Json()},
-              {"hardfail", optional_number(t.hardfail)}}},
+              {"hardfail", optional_number(t.hardfail)},
+              {"failflip", optional_number(t.flip)},
+              {"failssim", optional_number(t.ssim)}}},
             {"structure", comparison.structure},
             {"header", comparison.header},
             {"not_compared", comparison.not_compared},
@@ -158,7 +169,7 @@ Json report_json(const Comparison& comparison, const Thresholds& t, const std::s
             {"over_hardfail", comparison.over_hardfail},
             {"max", number(comparison.max)},
             {"channels", channels},
-            {"flip", flip ? flip_json(*flip) : Json()}};
+            {"flip", comparison.flip ? flip_json(*comparison.flip) : Json()}};
 }
 
 }  // namespace cistula

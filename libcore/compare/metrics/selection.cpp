@@ -19,8 +19,9 @@ bool fits(const std::string& pattern, const std::string& name) {
 
 void add_mask(Region& region, const Mask& mask, const std::string& subject) {
     if (!contains(mask.window, region.window))
-        fail_usage(fmt::format("{}--mask: has the pixels {}, and {} are compared; give a mask with all of them",
-                               subject, format_rect(mask.window), format_rect(region.window)));
+        fail_usage(fmt::format("{}`mask`: has the pixels {}, and {} are compared", subject, format_rect(mask.window),
+                               format_rect(region.window)),
+                   "give a mask with all of them");
     region.counts.reserve(region.window.pixels());
     const PixelRect& window = region.window;
     for (int y = window.y; y - window.y < window.height; ++y) {
@@ -29,8 +30,8 @@ void add_mask(Region& region, const Mask& mask, const std::string& subject) {
         region.counts.insert(region.counts.end(), row, row + window.width);
     }
     if (region.pixels() == 0)
-        fail_usage(fmt::format("{}--mask: counts none of the pixels {}; those count where it is above 0", subject,
-                               format_rect(window)));
+        fail_usage(fmt::format("{}`mask`: counts none of the pixels {}", subject, format_rect(window)),
+                   "those count where it is above 0");
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ Region region_of(const StoredPicture& a, const StoredPicture& b, const Selection
         if (!selection.intersection)
             for (const auto& [which, data] : {std::pair("first", a.data), std::pair("second", b.data)})
                 if (!contains(data, crop))
-                    fail_usage(fmt::format("{}--crop {}: leaves the data window of the {} image, {}", subject,
+                    fail_usage(fmt::format("{}`crop` {}: leaves the data window of the {} image, {}", subject,
                                            format_rect(crop), which, format_rect(data)));
         region.window = selection.intersection ? intersection(region.window, crop) : crop;
     }

@@ -23,7 +23,10 @@ struct Selection {
     bool intersection = false;        // only pixels that both data windows have
     std::optional<PixelRect> crop;    // only those of a rectangle in pixel space
     std::optional<Mask> mask;         // only those that count there
-    bool ssim = false;                // a metric that takes long
+    bool common_channels = false;     // channels and parts that only one file has are no difference
+    // metrics that take long
+    bool ssim = false;
+    bool flip = false;
 
     /// Whether windows may differ, since pixels outside are left out.
     bool excuses_windows() const { return intersection || crop; }

@@ -1,4 +1,4 @@
-#include "compare/metrics/ssim.h"
+#include "compare/metrics/channel_statistics.h"
 
 #include <array>
 #include <cmath>
@@ -9,7 +9,8 @@
 namespace cistula {
 namespace {
 
-constexpr int side = 11, radius = side / 2;
+constexpr int side = 11;
+constexpr int radius = side / 2;
 
 /// The weights of a window's row, of sum 1; a window's are products of two.
 std::array<double, side> gaussian() {
@@ -57,8 +58,11 @@ struct Moments {
         ab += weight * other.ab;
     }
     double ssim() const {
-        constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
-        const double a_variance = aa - a * a, b_variance = bb - b * b, covariance = ab - a * b;
+        constexpr double c1 = 0.01 * 0.01;
+        constexpr double c2 = 0.03 * 0.03;
+        const double a_variance = aa - a * a;
+        const double b_variance = bb - b * b;
+        const double covariance = ab - a * b;
         return (2 * a * b + c1) * (2 * covariance + c2) / ((a * a + b * b + c1) * (a_variance + b_variance + c2));
     }
 };
@@ -82,12 +86,14 @@ class Rows {
     void read(int row) {
         read_row(a_, region_.window, row, a_shades_);
         read_row(b_, region_.window, row, b_shades_);
-        const size_t slot = static_cast<size_t>(row) % side, start = static_cast<size_t>(row) * width_;
+        const size_t slot = static_cast<size_t>(row) % side;
+        const size_t start = static_cast<size_t>(row) * width_;
         for (size_t x = 0; x < windows(); ++x) {
             Moments sum;
             int missing = 0;
             for (size_t i = 0; i < side; ++i) {
-                const double p = a_shades_[x + i], q = b_shades_[x + i];
+                const double p = a_shades_[x + i];
+                const double q = b_shades_[x + i];
                 sum.add(weights_[i], {p, q, p * p, q * q, p * q});
                 missing += !region_.counts_at(start + x + i);
             }

@@ -19,7 +19,8 @@ using Channels = std::map<std::string, const LayeredPicture::Channel*>;
 /// Half the distance from a value to the next larger one of its type.
 double half_unit(float value, bool half) {
     const double magnitude = std::abs(static_cast<double>(value));
-    const int digits = half ? 11 : 24, least = half ? -14 : -126;
+    const int digits = half ? 11 : 24;
+    const int least = half ? -14 : -126;
     const int exponent = std::max(magnitude > 0 ? std::ilogb(magnitude) : least, least);
     return std::ldexp(1.0, exponent - digits);
 }
@@ -76,7 +77,8 @@ std::vector<DivisionSums> division_sums(const LayeredPicture& picture) {
         divisions.push_back(sums_of(name, layers, channels, picture));
     };
     add("path", {path_layer_names, path_layer_names + path_layer_count});
-    constexpr std::string_view light = light_layer_prefix, red = ".R";
+    constexpr std::string_view light = light_layer_prefix;
+    constexpr std::string_view red = ".R";
     std::vector<std::string> lights;
     for (const std::string_view layer : common_light_layer_names) lights.push_back(std::string(light).append(layer));
     for (const auto& [name, channel] : channels) {

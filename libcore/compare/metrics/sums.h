@@ -15,7 +15,9 @@ struct DivisionSums {
     size_t layers = 0;
     size_t pixels_off = 0;  // where a channel differs by more than the rounding of its values to the file's types
     double most = 0;        // the largest difference there, at:
-    int x = 0, y = 0;       // in the display window
+    // in the display window
+    int x = 0;
+    int y = 0;
     std::string channel;
 };
 

@@ -25,8 +25,7 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-Table::Table(std::vector<std::string> heads, std::string caption)
-    : heads_(std::move(heads)), caption_(std::move(caption)) {}
+Table::Table(std::vector<std::string> heads) : heads_(std::move(heads)) {}
 
 void Table::row(const std::vector<std::string>& cells, const std::string& css) {
     body_ += css.empty() ? "<tr>" : fmt::format("<tr class=\"{}\">", css);
@@ -39,9 +38,7 @@ void Table::row(const std::vector<std::string>& cells, const std::string& css) {
 }
 
 std::string Table::html() const {
-    std::string text = "<div class=\"scroll\" tabindex=\"0\"><table>";
-    if (!caption_.empty()) text += "<caption><span>" + caption_ + "</span></caption>";
-    text += "<thead><tr>";
+    std::string text = "<div class=\"scroll\" tabindex=\"0\"><table><thead><tr>";
     for (const std::string& head : heads_) {
         const bool number = head[0] == '>';
         text += fmt::format("<th scope=\"col\"{}>{}</th>", number ? " class=\"n\"" : "", head.substr(number ? 1 : 0));

@@ -12,14 +12,13 @@ std::string escaped(const std::string& text);
 /// A table in a scrollable box. Cells are HTML; columns whose head begins with '>' are numbers.
 class Table {
   public:
-    explicit Table(std::vector<std::string> heads, std::string caption = "");
+    explicit Table(std::vector<std::string> heads);
     void row(const std::vector<std::string>& cells, const std::string& css = "");
-    bool empty() const { return body_.empty(); }
     std::string html() const;
 
   private:
     std::vector<std::string> heads_;
-    std::string caption_, body_;
+    std::string body_;
 };
 
 /// A figure with its caption (HTML).

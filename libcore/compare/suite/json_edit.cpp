@@ -1,6 +1,9 @@
 #include "compare/suite/json_edit.h"
 
+#include <set>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -10,7 +13,8 @@ namespace {
 
 /// A part of the text, [begin, end).
 struct TextRange {
-    size_t begin = 0, end = 0;
+    size_t begin = 0;
+    size_t end = 0;
 };
 
 struct JsonMember {
@@ -27,7 +31,7 @@ class JsonWalk {
     size_t after_blanks(size_t at) const {
         while (at < text_.size()) {
             if (text_.compare(at, 2, "//") == 0)
-                at = text_.find('\n', at);
+                at = text_.find_first_of("\r\n", at);  // where the parser ends it
             else if (text_.compare(at, 2, "/*") == 0)
                 at = text_.find("*/", at) + 2;
             else if (is_blank(text_[at]))
@@ -115,37 +119,69 @@ std::string fitted(const std::string& value, const std::string* indentation) {
     return text;
 }
 
-}  // namespace
+/// Finds what the text gets in which place.
+class JsonChanges {
+  public:
+    JsonChanges(const std::string& text, const JsonValues& values) : text_(text), values_(values), walk_(text) {
+        look_into(walk_.after_blanks(0), "");
+        if (pieces_.size() != values_.size()) throw std::logic_error("the JSON text has no such place");
+    }
 
-std::string with_json_value(const std::string& text, std::string_view pointer, const std::string& value) {
-    const JsonWalk walk(text);
-    size_t at = walk.after_blanks(0);
-    while (true) {
-        if (pointer.empty() || pointer[0] != '/') throw std::logic_error("no JSON pointer");
-        pointer.remove_prefix(1);
-        const std::string_view key = pointer.substr(0, pointer.find('/'));
-        pointer.remove_prefix(key.size());
-        const std::vector<JsonMember> members = walk.members(at);
-        const bool is_object = text[at] == '{';
-        const JsonMember* found = nullptr;
-        for (size_t i = 0; i < members.size() && !found; ++i)
-            if (is_object ? members[i].name == key : std::to_string(i) == key) found = &members[i];
+    std::string text() const {
+        std::string changed;
+        size_t at = 0;
+        for (const auto& [range, piece] : pieces_) {
+            changed.append(text_, at, range.begin - at).append(piece);
+            at = range.end;
+        }
+        return changed.append(text_, at);
+    }
+
+  private:
+    /// Whether the value at a pointer, or one below it, changes.
+    bool has_below(const std::string& pointer) const {
+        const auto first = values_.lower_bound(pointer + '/');
+        return first != values_.end() && first->first.starts_with(pointer + '/');
+    }
+
+    void look_into(size_t at, const std::string& pointer) {
+        const std::vector<JsonMember> members = walk_.members(at);
+        const bool is_object = text_[at] == '{';
+        std::set<std::string> there;
         std::string store;
-        if (found && !pointer.empty()) {
-            at = found->value.begin;
-        } else if (found) {
-            const std::string* lines = indentation(text, found->key, store);
-            return text.substr(0, found->value.begin) + fitted(value, lines) + text.substr(found->value.end);
-        } else if (is_object && pointer.empty()) {
-            const std::string* lines = members.empty() ? nullptr : indentation(text, members.back().key, store);
-            const size_t place = members.empty() ? at + 1 : members.back().value.end;
-            const std::string before = members.empty() ? "" : lines ? ",\n" + *lines : ", ";
-            return text.substr(0, place) + before + nlohmann::json(key).dump() + ": " + fitted(value, lines) +
-                   text.substr(place);
-        } else {
-            throw std::logic_error("the JSON text has no such place");
+        for (size_t i = 0; i < members.size(); ++i) {
+            const JsonMember& member = members[i];
+            const std::string own = pointer + '/' + (is_object ? member.name : std::to_string(i));
+            there.insert(own);
+            if (const auto value = values_.find(own); value != values_.end())
+                pieces_.emplace_back(member.value, fitted(value->second, indentation(text_, member.key, store)));
+            else if (has_below(own))
+                look_into(member.value.begin, own);
+        }
+        if (!is_object) return;
+        const std::string* lines = members.empty() ? nullptr : indentation(text_, members.back().key, store);
+        const size_t end = members.empty() ? at + 1 : members.back().value.end;
+        std::string between = members.empty() ? "" : lines ? ",\n" + *lines : ", ";
+        for (auto value = values_.lower_bound(pointer + '/');
+             value != values_.end() && value->first.starts_with(pointer + '/'); ++value) {
+            const std::string key = value->first.substr(pointer.size() + 1);
+            if (key.find('/') != key.npos || there.contains(value->first)) continue;
+            pieces_.emplace_back(TextRange{end, end},
+                                 between + nlohmann::json(key).dump() + ": " + fitted(value->second, lines));
+            if (between.empty()) between = ", ";
         }
     }
+
+    const std::string& text_;
+    const JsonValues& values_;
+    const JsonWalk walk_;
+    std::vector<std::pair<TextRange, std::string>> pieces_;  // in the order of the text
+};
+
+}  // namespace
+
+std::string with_json_values(const std::string& text, const JsonValues& values) {
+    return JsonChanges(text, values).text();
 }
 
 }  // namespace cistula

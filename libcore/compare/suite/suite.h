@@ -22,14 +22,23 @@ struct SuiteCase : RenderRequest {
     std::string name;
     std::string place;                     // in suite.json: "/cases/3"
     std::string golden;                    // as given: an EXR, with a pattern for several frames; or empty
+    std::string rendered;                  // as golden: what another program rendered; or empty
+    std::vector<std::string> command;      // words of a command that renders to {output}; or empty
     std::vector<std::string> hashes;       // of the frames' pictures (picture_hash); or empty
     std::vector<std::string> film_hashes;  // of the frames' films (film_hash); or empty
     std::string recorded_version;          // of Cistula, when the hashes were recorded; or empty
     std::optional<Precision> recorded_precision;
 
+    /// Whether the picture is another program's.
+    bool is_foreign() const { return !rendered.empty() || !command.empty(); }
+    /// What renders it on a backend, for tables: "embree", "file", "command".
+    const char* source_name(Backend backend) const {
+        return !rendered.empty() ? "file" : !command.empty() ? "command" : backend_name(backend);
+    }
     std::string scene_path(const std::string& folder) const;
     /// The golden file of a frame; empty if there is none.
     std::string golden_path(const std::string& folder, int frame) const;
+    std::string rendered_path(const std::string& folder, int frame) const;
 };
 
 struct Suite {

@@ -34,12 +34,14 @@ std::vector<std::string> channels_alone(const LayeredPicture& in, const LayeredP
 }
 
 /// What differs in sizes and layers; empty: nothing.
-std::string other_structure(const LayeredPicture& golden, const LayeredPicture& fresh) {
+std::string other_structure(const LayeredPicture& golden, const LayeredPicture& fresh, bool common_channels) {
     std::vector<std::string> parts;
     if (window_text(golden) != window_text(fresh))
         parts.push_back(
             fmt::format("another size: {} in the golden image, {} rendered", window_text(golden), window_text(fresh)));
-    const auto lacking = channels_alone(golden, fresh), added = channels_alone(fresh, golden);
+    if (common_channels) return joined(parts, "; ");
+    const auto lacking = channels_alone(golden, fresh);
+    const auto added = channels_alone(fresh, golden);
     if (!lacking.empty()) parts.push_back("layers of the golden image alone: " + joined(lacking, ", "));
     if (!added.empty()) parts.push_back("layers that the golden image lacks: " + joined(added, ", "));
     return joined(parts, "; ");
@@ -65,8 +67,8 @@ std::string text_attribute(const LayeredPicture& picture, const char* name) {
 std::string other_origin(const std::string& version, const std::string& precision, const LayeredPicture& fresh) {
     const std::string now_version = text_attribute(fresh, "cistula:version");
     const std::string now_precision = text_attribute(fresh, "cistula:precision");
-    const bool other_version = !version.empty() && version != now_version;
-    const bool other_precision = !precision.empty() && precision != now_precision;
+    const bool other_version = !version.empty() && !now_version.empty() && version != now_version;
+    const bool other_precision = !precision.empty() && !now_precision.empty() && precision != now_precision;
     if (!other_version && !other_precision) return "";
     return fmt::format("recorded{}{}, rendered{}{}", other_precision ? " in " + precision : "",
                        other_version ? " by version " + version : "", other_precision ? " in " + now_precision : "",
@@ -82,13 +84,16 @@ std::string worst_channel(const Comparison& comparison) {
     return fmt::format("; worst: {} at {}", worst->name, worst_text(*worst));
 }
 
-/// The comparison of a golden image that is there.
-void judge_picture(const LayeredPicture& golden, const LayeredPicture& fresh, SuiteResult& result) {
+/// The comparison of a golden image that is there. With thresholds other programs' pictures need not have all of its
+/// channels.
+void judge_picture(const LayeredPicture& golden, const LayeredPicture& fresh, StopSignal stop, SuiteResult& result) {
     const Thresholds& thresholds = result.of->thresholds;
-    const Comparison comparison = compare_pictures(values_of(golden), values_of(fresh), thresholds);
+    Selection selection;
+    selection.common_channels = result.of->is_foreign() && thresholds.any();
+    const Comparison comparison = compare_pictures(values_of(golden), values_of(fresh), thresholds, selection, stop);
     const bool holds = passes(comparison, thresholds);
     result.outcome = holds ? Outcome::holds : Outcome::differs;
-    if (const std::string other = other_structure(golden, fresh); !other.empty())
+    if (const std::string other = other_structure(golden, fresh, selection.common_channels); !other.empty())
         result.verdict = other;
     else if (holds)
         result.verdict = comparison.differing() == 0 ? "equal" : verdict(comparison, thresholds);
@@ -96,7 +101,7 @@ void judge_picture(const LayeredPicture& golden, const LayeredPicture& fresh, Su
         result.verdict = verdict(comparison, thresholds) + worst_channel(comparison);
     const Comparison headers = compare_pictures(header_of(golden), header_of(fresh), {});
     for (const std::string& line : headers.header)
-        if (!golden.attributes.empty()) result.notes.push_back("header: " + line);
+        if (!golden.attributes.empty() && !result.of->is_foreign()) result.notes.push_back("header: " + line);
     result.comparison = comparison;
 }
 
@@ -111,7 +116,7 @@ bool same_bits(const LayeredPicture& a, const LayeredPicture& b) {
     return passes(compare_pictures(values_of(a), values_of(b), {}), {});
 }
 
-void judge(const SuiteFrame& frame, size_t index, const LayeredPicture* golden, SuiteResult& result) {
+void judge(const SuiteFrame& frame, size_t index, const LayeredPicture* golden, StopSignal stop, SuiteResult& result) {
     const SuiteCase& one = *result.of;
     const LayeredPicture& fresh = frame.picture;
     result.width = fresh.width;
@@ -122,12 +127,12 @@ void judge(const SuiteFrame& frame, size_t index, const LayeredPicture* golden, 
     result.notes.insert(result.notes.end(), frame.notes.begin(), frame.notes.end());
     if (!one.hashes.empty()) result.expected_hash = one.hashes[index];
     if (!one.film_hashes.empty()) result.expected_film_hash = one.film_hashes[index];
-    const std::string update = fmt::format("--update {} records it", one.name);
+    const std::string update = fmt::format("`update` {} records it", one.name);
     std::string origin;
     if (golden) {
         origin = other_origin(text_attribute(*golden, "cistula:version"), text_attribute(*golden, "cistula:precision"),
                               fresh);
-        judge_picture(*golden, fresh, result);
+        judge_picture(*golden, fresh, stop, result);
     } else if (!one.golden.empty()) {
         result.outcome = Outcome::missing;
         result.verdict = fmt::format("no golden image: {} is not there; {}", result.golden, update);

@@ -23,7 +23,9 @@ struct SuiteResult {
     Outcome outcome = Outcome::skipped;
     std::string verdict;             // one line
     std::vector<std::string> notes;  // what else is to be said, one line each
-    int width = 0, height = 0;       // of the rendered data window
+    // of the rendered data window
+    int width = 0;
+    int height = 0;
     double seconds = 0;
     std::string golden;  // file, or empty
     std::string hash, expected_hash, film_hash, expected_film_hash;
@@ -35,7 +37,7 @@ struct SuiteResult {
 
 /// Compares a frame with what its case expects: the golden image (already read, or null where it is not there), or
 /// hashes. The header's attributes are compared, and noted, but do not decide.
-void judge(const SuiteFrame& frame, size_t index, const LayeredPicture* golden, SuiteResult& result);
+void judge(const SuiteFrame& frame, size_t index, const LayeredPicture* golden, StopSignal stop, SuiteResult& result);
 
 /// Whether two pictures have the same windows, channels, types and bits.
 bool same_bits(const LayeredPicture& a, const LayeredPicture& b);

@@ -16,12 +16,17 @@ constexpr std::string_view precision_choices[] = {"float", "double"};
 constexpr Key suite_list[] = {{"$schema", KeyType::text}, {"defaults"}, {"cases", KeyType::other, {}, {}, true}};
 
 // Those that belong to one case come first; `defaults` has the others.
-constexpr size_t own_keys = 5;
+constexpr size_t own_keys = 7;
 
 std::span<const Key> case_list() {
     static const std::vector<Key> list = [] {
-        std::vector<Key> keys = {
-            {"name", KeyType::other, {}, {}, true}, {"golden", KeyType::text}, {"hash"}, {"film_hash"}, {"recorded"}};
+        std::vector<Key> keys = {{"name", KeyType::other, {}, {}, true},
+                                 {"golden", KeyType::text},
+                                 {"hash"},
+                                 {"film_hash"},
+                                 {"recorded"},
+                                 {"rendered", KeyType::text},
+                                 {"command"}};
         for (const RequestKey& key : request_keys())
             if (key.in_suite) keys.push_back(key);
         keys.insert(keys.end(), {{"thresholds"}, {"backends"}, {"tags"}});
@@ -31,9 +36,9 @@ std::span<const Key> case_list() {
 }
 
 constexpr Key thresholds_list[] = {
-    {"fail", KeyType::number, {0, most}},
-    {"failpercent", KeyType::number, {0, 100}, "0"},
-    {"hardfail", KeyType::number, {0, most}},
+    {"fail", KeyType::number, {0, most}},     {"failpercent", KeyType::number, {0, 100}, "0"},
+    {"hardfail", KeyType::number, {0, most}}, {"failflip", KeyType::number, {0, 1}},
+    {"failssim", KeyType::number, {-1, 1}},
 };
 
 constexpr Key recorded_list[] = {

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "compare/page/page_parts.h"
 #include "compare/suite/suite_pixels.h"
-#include "image/picture/png.h"
+#include "image/picture/picture_io.h"
 #include "sequence/run_context.h"
 
 namespace cistula {
@@ -167,7 +167,8 @@ std::string values_html(const LayeredPicture& golden, const LayeredPicture& fres
     for (const LayeredPicture::Channel& channel : fresh.channels)
         for (const LayeredPicture::Channel& other : golden.channels) {
             if (other.name != channel.name) continue;
-            const float a = value_at(other, golden, pixel), b = value_at(channel, fresh, pixel);
+            const float a = value_at(other, golden, pixel);
+            const float b = value_at(channel, fresh, pixel);
             if (std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b) && channel.name.size() > 1) continue;
             table.row({escaped(channel.name), fmt::format("{:.9g}", a), fmt::format("{:.9g}", b),
                        fmt::format("{:.4g}", difference(a, b))});
@@ -200,16 +201,24 @@ std::string side_html(const char* title, const std::string& tree, const std::str
 }
 
 std::string pixel_html(const SuiteResult& result, const std::string& folder, const LayeredPicture& golden,
-                       const LayeredPicture& fresh, const SuitePixel& pixel) {
+                       const LayeredPicture& fresh, const SuitePixel& pixel, StopSignal stop) {
     std::string html = fmt::format("<h3>Pixel {},{}</h3>\n{}", pixel.x, pixel.y, values_html(golden, fresh, pixel));
     try {
-        const SuitePixelWhy why = why_pixel(result, folder, &golden, fresh, pixel);
+        const SuitePixelWhy why = why_pixel(result, folder, &golden, fresh, pixel, stop);
         html += "<div class=\"why\">" + side_html("Why golden", why.golden, why.fresh, why.golden_note) +
                 side_html("Why new", why.fresh, why.golden, why.fresh_note) + "</div>\n";
     } catch (const Error& error) {
+        if (error.kind() == ErrorKind::interrupted) throw;
         html += fmt::format("<p class=\"note\">Its rays cannot be followed: {}.</p>\n", escaped(error.what()));
     }
     return html;
+}
+
+/// A word that a shell takes as it is.
+std::string shell_word(const std::string& text) {
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+    return word + "'";
 }
 
 std::string title_of(const SuiteResult& result) {
@@ -227,14 +236,14 @@ std::string notes_html(const SuiteResult& result) {
 }  // namespace
 
 std::string failure_html(const SuiteResult& result, const std::string& folder, const LayeredPicture* golden,
-                         const LayeredPicture& fresh) {
+                         const LayeredPicture& fresh, StopSignal stop) {
     std::vector<double> differences;
     const bool same_window = golden && golden->width == fresh.width && golden->height == fresh.height &&
                              golden->x == fresh.x && golden->y == fresh.y;
     if (same_window) differences = pixel_differences(*golden, fresh);
     const std::vector<SuitePixel> worst = worst_pixels(fresh, differences, most_worst_pixels);
     std::string html = pictures_html(golden, fresh, differences, worst.empty() ? nullptr : &worst.front());
-    for (const SuitePixel& pixel : worst) html += pixel_html(result, folder, *golden, fresh, pixel);
+    for (const SuitePixel& pixel : worst) html += pixel_html(result, folder, *golden, fresh, pixel, stop);
     return html;
 }
 
@@ -247,10 +256,13 @@ std::string suite_page(const Suite& suite, const std::vector<SuiteResult>& resul
         if (result.failed()) {
             const std::string id = fmt::format("failure{}", ++number);
             name = fmt::format("<a href=\"#{}\">{}</a>", id, name);
-            sections += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}{}</section>\n", id, escaped(title_of(result)),
-                                    notes_html(result), result.page);
+            sections +=
+                fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}{}<p>To accept the new picture:</p>\n{}</section>\n",
+                            id, escaped(title_of(result)), notes_html(result), result.page,
+                            command_html(fmt::format("render-compare suite {} {} --update", shell_word(suite.folder),
+                                                     result.of->name)));
         }
-        table.row({name, std::to_string(result.frame), backend_name(result.backend),
+        table.row({name, std::to_string(result.frame), result.of->source_name(result.backend),
                    result.precision ? precision_name(*result.precision) : "–", escaped(result_text(result))});
     }
     const auto context = run_context("render-compare");

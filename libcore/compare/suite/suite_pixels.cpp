@@ -21,6 +21,8 @@
 namespace cistula {
 namespace {
 
+constexpr size_t most_branches = size_t{1} << 14;  // of a pixel that a page tells of
+
 bool has_same(const LayeredPicture& a, const LayeredPicture& b, const char* name) {
     const auto *first = attribute_of<std::string>(a, name), *second = attribute_of<std::string>(b, name);
     return first && second && *first == *second;
@@ -33,11 +35,12 @@ struct Followed {
 };
 
 Followed follow_pixel(const SuiteCase& one, const SceneDescription& scene, FrameSettings settings, Precision precision,
-                      int frame, const SuitePixel& pixel) {
+                      int frame, const SuitePixel& pixel, StopSignal stop) {
     settings.layers = {};
-    const Scene compiled(scene, precision);
+    const Scene compiled(scene, precision, stop);
     const CameraFrame camera = camera_at(scene.camera, frame);
-    PixelTree tree = make_embree_renderer(compiled)->pixel_tree(camera, settings, pixel.x, pixel.y);
+    PixelTree tree =
+        make_embree_renderer(compiled)->pixel_tree(camera, settings, pixel.x, pixel.y, {most_branches, stop});
     Followed followed;
     OutputChannels channels;  // R G B A alone, as the case has them
     channels.half = one.channels.half;
@@ -80,7 +83,7 @@ bool read_header(const LayeredPicture& golden, FrameSettings& settings, Precisio
 }
 
 void explain_golden(const SuiteCase& one, const SceneDescription& scene, FrameSettings settings, int frame,
-                    const LayeredPicture& golden, const LayeredPicture& fresh, const SuitePixel& pixel,
+                    const LayeredPicture& golden, const LayeredPicture& fresh, const SuitePixel& pixel, StopSignal stop,
                     SuitePixelWhy& why) {
     Precision precision = Precision::single_;
     if (!attribute_of<std::string>(golden, "cistula:sceneHash")) {
@@ -90,13 +93,18 @@ void explain_golden(const SuiteCase& one, const SceneDescription& scene, FrameSe
     } else if (attribute_of<double>(golden, "cistula:targetError") || !read_header(golden, settings, precision)) {
         why.golden_note = "only its values are known: its header names no grid of samples to follow";
     } else {
-        Followed followed = follow_pixel(one, scene, settings, precision, frame, pixel);
-        if (gives(followed, golden, pixel))
-            why.golden = std::move(followed.text);
-        else
-            why.golden_note =
-                "only its values are known: this version gets others from the scene and the settings that its header "
-                "names";
+        try {
+            Followed followed = follow_pixel(one, scene, settings, precision, frame, pixel, stop);
+            if (gives(followed, golden, pixel))
+                why.golden = std::move(followed.text);
+            else
+                why.golden_note =
+                    "only its values are known: this version gets others from the scene and the settings that its "
+                    "header names";
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::interrupted) throw;
+            why.golden_note = fmt::format("only its values are known: {}", error.what());
+        }
     }
 }
 
@@ -107,7 +115,8 @@ std::vector<double> pixel_differences(const LayeredPicture& golden, const Layere
     for (const LayeredPicture::Channel& channel : fresh.channels) {
         const LayeredPicture::Channel* other = channel_of(golden, channel.name);
         for (size_t i = 0; other && i < differences.size(); ++i) {
-            const float a = other->values[i], b = channel.values[i];
+            const float a = other->values[i];
+            const float b = channel.values[i];
             if (std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b)) continue;
             differences[i] = std::max({differences[i], difference(a, b), std::numeric_limits<double>::denorm_min()});
         }
@@ -137,21 +146,25 @@ std::vector<SuitePixel> worst_pixels(const LayeredPicture& fresh, const std::vec
 }
 
 SuitePixelWhy why_pixel(const SuiteResult& result, const std::string& folder, const LayeredPicture* golden,
-                        const LayeredPicture& fresh, const SuitePixel& pixel) {
+                        const LayeredPicture& fresh, const SuitePixel& pixel, StopSignal stop) {
     const SuiteCase& one = *result.of;
     SuitePixelWhy why;
+    if (one.is_foreign()) {
+        why.fresh_note = "another program rendered it";
+        return why;
+    }
     if (one.frame.adaptive()) {
         why.fresh_note = "rays of images by a grid of samples are followed, and this is none";
         return why;
     }
-    const SceneDescription scene = read_scene(one.scene_path(folder));
+    const SceneDescription scene = read_scene_of(one, folder);
     const FrameSettings settings = settings_of(one, scene);
-    Followed followed = follow_pixel(one, scene, settings, *result.precision, result.frame, pixel);
+    Followed followed = follow_pixel(one, scene, settings, *result.precision, result.frame, pixel, stop);
     if (!gives(followed, fresh, pixel))
         why.fresh_note =
             fmt::format("the CPU, which is followed here, gets another value than {}", backend_name(result.backend));
     why.fresh = std::move(followed.text);
-    if (golden) explain_golden(one, scene, settings, result.frame, *golden, fresh, pixel, why);
+    if (golden) explain_golden(one, scene, settings, result.frame, *golden, fresh, pixel, stop, why);
     return why;
 }
 

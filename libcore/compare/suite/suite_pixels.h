@@ -10,7 +10,8 @@ namespace cistula {
 
 /// A pixel, counted from the top left of the full frame.
 struct SuitePixel {
-    int x = 0, y = 0;
+    int x = 0;
+    int y = 0;
     double difference = 0;  // the largest of a channel
 };
 
@@ -27,9 +28,10 @@ struct SuitePixelWhy {
     std::string golden_note, fresh_note;  // what there is to say beside or in the place of a tree, one line
 };
 
-/// The trees of both sides. That of the golden image is known where its header names the same scene and camera: then
-/// its own precision, depth, samples and cutoff are followed, and shown where they give its value to the last bit.
+/// The trees of both sides, of so many branches at most. That of the golden image is known where its header names the
+/// same scene and camera: then its own precision, depth, samples and cutoff are followed, and shown where they give its
+/// value to the last bit.
 SuitePixelWhy why_pixel(const SuiteResult& result, const std::string& folder, const LayeredPicture* golden,
-                        const LayeredPicture& fresh, const SuitePixel& pixel);
+                        const LayeredPicture& fresh, const SuitePixel& pixel, StopSignal stop);
 
 }  // namespace cistula

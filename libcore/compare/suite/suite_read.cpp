@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "base/file_bytes.h"
 #include "compare/suite/suite.h"
 #include "compare/suite/suite_keys.h"
 #include "image/color/color_space.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 #include "scene/readers/json_reader.h"
 #include "sequence/output_name.h"
 
@@ -30,7 +31,7 @@ auto parsed_at(const JsonValue& value, const Parse& parse) {
     try {
         return parse();
     } catch (const Error& error) {
-        value.fail(error.what());
+        value.fail(error.named(quoted_name));
     }
 }
 
@@ -40,8 +41,10 @@ Thresholds thresholds_in(const JsonValue& value) {
     keys.read("fail", thresholds.fail);
     keys.read("failpercent", thresholds.failpercent);
     keys.read("hardfail", thresholds.hardfail);
+    keys.read("failflip", thresholds.flip);
+    keys.read("failssim", thresholds.ssim);
     if (keys.has("failpercent") && !thresholds.fail)
-        keys.fail("failpercent", "needs to know when a pixel fails; add \"fail\"");
+        keys.fail("failpercent", "needs to know when a pixel fails", "add \"fail\"");
     keys.finish();
     return thresholds;
 }
@@ -49,11 +52,10 @@ Thresholds thresholds_in(const JsonValue& value) {
 template <class T, class Read>
 std::vector<T> different_items(const JsonValue& value, size_t least, const char* expected, const Read& read) {
     std::vector<T> items;
+    std::set<T> known;
     for (size_t i = 0; i < value.array_size(least, expected); ++i) {
-        T item = read(value.item(i));
-        if (std::find(items.begin(), items.end(), item) != items.end())
-            value.item(i).fail("is given already; give it once");
-        items.push_back(std::move(item));
+        items.push_back(read(value.item(i)));
+        if (!known.insert(items.back()).second) value.item(i).fail("is given already", "give it once");
     }
     return items;
 }
@@ -71,7 +73,7 @@ void read_settings(JsonObject& keys, SuiteCase& one) {
     }
     for (const RequestKey& key : request_keys())
         if (key.in_suite && keys.has(key.name)) read_key(one, key, keys.at(key.name));
-    parsed_at(keys.value(), [&] { check_request(one, quoted_name); });
+    parsed_at(keys.value(), [&] { check_request(one); });
     if (one.frames.empty()) one.frames = {0};
     if (keys.has("thresholds")) one.thresholds = thresholds_in(keys.at("thresholds"));
     if (keys.has("backends"))
@@ -109,23 +111,51 @@ void read_recorded(const JsonValue& value, SuiteCase& one) {
     keys.finish();
 }
 
-void read_golden(JsonObject& keys, SuiteCase& one) {
-    keys.read("golden", one.golden);
-    if (keys.has("golden")) {
-        const OutputName name = parsed_at(keys.at("golden"), [&] {
-            if (lower_extension(one.golden) != ".exr")
-                throw Error(ExitCode::usage, one.golden + ": golden images are EXRs");
-            return OutputName(one.golden, "golden");
-        });
-        if (one.frames.size() > 1 && !name.has_pattern())
-            keys.fail("golden",
-                      fmt::format("is one file, and \"frames\" names {}; put #### into its name", one.frames.size()));
+/// Reads the name of a picture, or of one for each frame.
+void read_picture_name(JsonObject& keys, const char* key, size_t frames, std::string& text) {
+    if (!keys.has(key)) return;
+    keys.read(key, text);
+    const OutputName name = parsed_at(keys.at(key), [&] {
+        if (lower_extension(text) != ".exr")
+            throw Error(ErrorKind::scene, text + ": golden images, and pictures rendered elsewhere, are EXRs");
+        return OutputName(text, key);
+    });
+    if (frames > 1 && !name.has_pattern())
+        keys.fail(key, fmt::format("is one file, and \"frames\" names {}; put #### into its name", frames));
+}
+
+/// Reads where the picture of another program comes from.
+void read_foreign(JsonObject& keys, SuiteCase& one) {
+    read_picture_name(keys, "rendered", one.frames.size(), one.rendered);
+    if (keys.has("command")) {
+        constexpr const char* expected =
+            "an array of words, {output} in one of them for the EXR to write, {frame} for the frame's number";
+        const JsonValue words = keys.at("command");
+        for (size_t i = 0; i < words.array_size(1, expected); ++i) {
+            if (!words.item(i).json().is_string()) words.fail_expected(expected);
+            one.command.push_back(words.item(i).json().get<std::string>());
+        }
+        if (std::none_of(one.command.begin(), one.command.end(),
+                         [](const std::string& word) { return word.find("{output}") != word.npos; }))
+            words.fail_expected(expected);
+        if (keys.has("rendered")) keys.fail("command", "\"rendered\" is there, too; give one of them");
     }
+    if (!one.is_foreign()) return;
+    for (const RequestKey& key : request_keys())
+        if (key.in_suite && key.name != "frames" && keys.has(key.name))
+            keys.fail(key.name, "has no place here: another program renders; leave it out");
+    for (const char* key : {"film_hash", "recorded", "backends"})
+        if (keys.has(key)) keys.fail(key, "has no place here: another program renders; leave it out");
+    one.backends = {Backend::embree};
+}
+
+void read_golden(JsonObject& keys, SuiteCase& one) {
+    read_picture_name(keys, "golden", one.frames.size(), one.golden);
     if (keys.has("hash") && keys.has("golden"))
-        keys.fail("hash", "\"golden\" has no place here: either says what is expected; leave it out");
+        keys.fail("hash", "\"golden\" has no place here: either says what is expected", "leave it out");
     if (keys.has("hash")) {
         one.hashes = hashes_in(keys.at("hash"), one.frames.size());
-        if (keys.has("thresholds")) keys.fail("thresholds", "a \"hash\" is equal or not; give a \"golden\" image");
+        if (keys.has("thresholds")) keys.fail("thresholds", "a \"hash\" is equal or not", "give a \"golden\" image");
     }
     if (keys.has("film_hash")) one.film_hashes = hashes_in(keys.at("film_hash"), one.frames.size());
     if (keys.has("recorded")) read_recorded(keys.at("recorded"), one);
@@ -137,8 +167,10 @@ SuiteCase read_case(const JsonValue& value, SuiteCase one) {
     one.name = name_in(keys.at("name"));
     read_settings(keys, one);
     read_golden(keys, one);
+    read_foreign(keys, one);
     keys.finish();
-    if (one.scene.empty()) value.fail("missing key 'scene', which \"defaults\" may have: expected a scene's file");
+    if (one.scene.empty() && !one.is_foreign())
+        value.fail("missing key 'scene', which \"defaults\" may have: expected a scene's file");
     return one;
 }
 
@@ -156,6 +188,10 @@ std::string SuiteCase::golden_path(const std::string& folder, int frame) const {
     return golden.empty() ? "" : below(folder, OutputName(golden, "golden").for_frame(frame));
 }
 
+std::string SuiteCase::rendered_path(const std::string& folder, int frame) const {
+    return rendered.empty() ? "" : below(folder, OutputName(rendered, "rendered").for_frame(frame));
+}
+
 Suite read_suite(const std::string& folder) {
     namespace fs = std::filesystem;
     Suite suite;
@@ -163,9 +199,10 @@ Suite read_suite(const std::string& folder) {
     suite.path = (fs::path(folder) / "suite.json").string();
     std::error_code error;
     if (fs::is_regular_file(folder, error))
-        throw Error(ExitCode::file, fmt::format("{}: is a file; give the folder of a suite.json", folder));
+        throw Error(ErrorKind::file, "is a file", "give the folder of a suite.json").at(folder);
     const fs::path whole = fs::weakly_canonical(folder, error);
     suite.name = whole.filename().empty() ? "suite" : whole.filename().string();
+    check_readable(suite.path);
     suite.text = read_file(suite.path);
     const Json json = parse_json(suite.text, suite.path);
     const JsonValue root(json, suite.path);
@@ -183,7 +220,7 @@ Suite read_suite(const std::string& folder) {
     for (size_t i = 0; i < cases.array_size(1, "an array of one case or more"); ++i) {
         SuiteCase one = read_case(cases.item(i), defaults);
         const auto [first, is_new] = places.emplace(one.name, one.place);
-        if (!is_new) cases.item(i).fail(fmt::format("'{}' is the name of {}; names differ", one.name, first->second));
+        if (!is_new) cases.item(i).fail(fmt::format("'{}' is the name of {}", one.name, first->second), "names differ");
         suite.cases.push_back(std::move(one));
     }
     keys.finish();

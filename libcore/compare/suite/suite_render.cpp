@@ -1,10 +1,18 @@
 #include "compare/suite/suite_render.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <filesystem>
+#include <utility>
+
+#include "base/file_bytes.h"
+#include "base/option_text.h"
 #include "base/timing.h"
+#include "compare/metrics/command.h"
+#include "image/exr/exr.h"
 #include "image/picture/picture_hash.h"
-#include "render/layer_list.h"
+#include "render/record/film_picture.h"
 #include "render/record/frame_header.h"
 #include "scene/readers/read_scene.h"
 #include "sequence/frame_writer.h"
@@ -34,10 +42,11 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
         FrameSettings settings = prepared.settings;
         whole = render_frame(*prepared.renderer, camera, settings, film, progress);
     });
-    if (!whole) throw Error(ExitCode::interrupted, "interrupted");
+    if (!whole) throw Error(ErrorKind::interrupted, "interrupted");
     if (film.flags != 0)
-        throw Error(ExitCode::failed, fmt::format("{}: frame {} cannot be trusted: {}", prepared.scene.source, frame,
-                                                  describe_flags(film.flags, prepared.scene)));
+        throw Error(ErrorKind::failed,
+                    fmt::format("frame {} cannot be trusted: {}", frame, describe_flags(film.flags, prepared.scene)))
+            .at(prepared.scene.source);
     uint64_t clamped = 0;
     LayeredPicture& picture = result.picture;
     picture = to_layers(film, one.channels, &clamped);
@@ -49,13 +58,63 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
     return result;
 }
 
+/// A word of a command with its places for the output and the frame filled.
+std::string filled(std::string word, const std::string& output, int frame) {
+    const std::pair<std::string, std::string> places[] = {{"{output}", output}, {"{frame}", std::to_string(frame)}};
+    for (const auto& [place, text] : places)
+        for (size_t at = word.find(place); at != word.npos; at = word.find(place, at + text.size()))
+            word.replace(at, place.size(), text);
+    return word;
+}
+
+LayeredPicture picture_of_command(const SuiteCase& one, const std::string& folder, int frame, StopSignal stop) {
+    const TemporaryFolder temporary;
+    const std::string output = temporary.file("rendered.exr");
+    std::vector<std::string> words;
+    for (const std::string& word : one.command) words.push_back(filled(word, output, frame));
+    const std::optional<CommandEnd> end = run_command(words, folder, temporary, stop);
+    if (!end) throw Error(ErrorKind::failed, fmt::format("{}: cannot be started; check the spelling", words[0]));
+    if (end->code != 0)
+        throw Error(ErrorKind::failed, fmt::format("{} {}: {}", words[0],
+                                                   end->code < 0 ? "was ended by a signal"
+                                                                 : fmt::format("ended with exit code {}", end->code),
+                                                   end->said.empty() ? "it said nothing" : end->said));
+    if (!std::filesystem::exists(output))
+        throw Error(ErrorKind::failed, fmt::format("{}: wrote no {{output}}", words[0]));
+    return read_exr(output);
+}
+
 }  // namespace
+
+SceneDescription read_scene_of(const SuiteCase& one, const std::string& folder) {
+    const std::string path = one.scene_path(folder);
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) check_readable(path);
+    return read_scene(path);
+}
+
+SuiteScene prepare_foreign(const SuiteCase& one, const std::string& folder, bool run_commands) {
+    if (!one.command.empty() && !run_commands)
+        fail_usage(fmt::format("its command is not run: {}; `run_commands` runs commands of suites",
+                               fmt::join(one.command, " ")));
+    SuiteScene result;
+    result.render = [&one, folder](int frame, RenderProgress& progress) {
+        SuiteFrame rendered;
+        rendered.frame = frame;
+        rendered.seconds = seconds_of([&] {
+            rendered.picture = one.command.empty() ? read_exr(one.rendered_path(folder, frame))
+                                                   : picture_of_command(one, folder, frame, progress.stop);
+        });
+        return rendered;
+    };
+    return result;
+}
 
 FrameSettings settings_of(const SuiteCase& one, const SceneDescription& scene) {
     try {
-        return frame_settings(one, scene, quoted_name);
+        return frame_settings(one, scene);
     } catch (const Error& error) {
-        throw Error(ExitCode::usage, fmt::format("{}: {}", one.place, error.what()));
+        throw error.named(quoted_name).at(one.place);
     }
 }
 
@@ -64,7 +123,7 @@ SuiteScene prepare_case(const SuiteCase& one, const std::string& folder, Backend
     SuiteScene result;
     const auto prepared = std::make_shared<PreparedCase>();
     prepared->one = one;
-    prepared->scene = read_scene(one.scene_path(folder));
+    prepared->scene = read_scene_of(one, folder);
     prepared->settings = settings_of(one, prepared->scene);
     const Scene scene(prepared->scene, one.precision, stop);
     if (!scene.precision_note().empty()) result.notes.push_back(scene.precision_note());

@@ -59,7 +59,7 @@ Json result_json(const SuiteResult& result) {
     Json json = {{"name", result.of->name},
                  {"scene", result.of->scene},
                  {"frame", result.frame},
-                 {"backend", backend_name(result.backend)},
+                 {"backend", result.of->source_name(result.backend)},
                  {"precision", result.precision ? Json(precision_name(*result.precision)) : Json()},
                  {"tags", result.of->tags},
                  {"outcome", outcome_name(result.outcome)},
@@ -128,8 +128,8 @@ std::string table_rows(const std::vector<SuiteResult>& results, size_t name_widt
     std::string text;
     for (const SuiteResult& result : results) {
         text += fmt::format("{:<{}} {:>7} {:<7} {:<9} {:>11} {:>8.3f}  {}\n", result.of->name, name_width, result.frame,
-                            backend_name(result.backend), precision_text(result), size_text(result), result.seconds,
-                            message_line(result_text(result)));
+                            result.of->source_name(result.backend), precision_text(result), size_text(result),
+                            result.seconds, message_line(result_text(result)));
         if (result.failed())
             for (const std::string& note : result.notes) text += "    " + message_line(note) + "\n";
     }
@@ -144,12 +144,14 @@ std::string summary_text(const SuiteCounts& counts) {
     else
         text = all > 0 ? fmt::format("hold: all {} pictures", all) : "nothing was compared";
     if (counts.skipped > 0) text += fmt::format("; {} skipped", counts.skipped);
-    if (counts.not_begun > 0) text += fmt::format("; {} cases not begun after a failure", counts.not_begun);
+    if (counts.not_begun > 0) text += fmt::format("; {} cases not rendered", counts.not_begun);
     return text + "\n";
 }
 
 std::string junit_xml(const Suite& suite, const std::vector<SuiteResult>& results) {
-    size_t failures = 0, errors = 0, skipped = 0;
+    size_t failures = 0;
+    size_t errors = 0;
+    size_t skipped = 0;
     double seconds = 0;
     std::string cases;
     for (const SuiteResult& result : results) {

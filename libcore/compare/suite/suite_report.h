@@ -12,7 +12,10 @@ namespace cistula {
 
 /// How many results have which outcome, and how many cases were not begun.
 struct SuiteCounts {
-    size_t held = 0, failed = 0, skipped = 0, not_begun = 0;
+    size_t held = 0;
+    size_t failed = 0;
+    size_t skipped = 0;
+    size_t not_begun = 0;
 };
 SuiteCounts count_results(const std::vector<SuiteResult>& results, size_t chosen);
 
@@ -35,7 +38,7 @@ nlohmann::ordered_json suite_json(const Suite& suite, const std::vector<SuiteRes
 /// The part of the page on a picture that failed: golden image, render and difference, and the worst pixels with why.
 /// `golden` is null where there is none.
 std::string failure_html(const SuiteResult& result, const std::string& folder, const LayeredPicture* golden,
-                         const LayeredPicture& fresh);
+                         const LayeredPicture& fresh, StopSignal stop);
 
 /// The page: all results, then the parts of those that failed, as each has it.
 std::string suite_page(const Suite& suite, const std::vector<SuiteResult>& results, const SuiteCounts& counts);

@@ -8,7 +8,9 @@
 #include <exception>
 #include <filesystem>
 #include <mutex>
+#include <new>
 #include <optional>
+#include <system_error>
 #include <thread>
 
 #include "base/error.h"
@@ -39,8 +41,8 @@ void require_known(const Suite& suite, const std::string& text, const char* what
         for (const SuiteCase& one : suite.cases)
             for (const std::string& tag : one.tags)
                 if (std::find(known.begin(), known.end(), tag) == known.end()) known.push_back(tag);
-    fail_usage(fmt::format("{}{}: {} has no such case; {}", what, text, suite.path,
-                           nearest_first(text, known, is_pattern ? "names and tags" : "cases")));
+    fail_usage(fmt::format("{}{}: {} has no such case", what, text, suite.path),
+               nearest_first(text, known, is_pattern ? "names and tags" : "cases"));
 }
 
 /// The cases of a run, taken one after the other by several threads.
@@ -62,10 +64,10 @@ class CaseQueue {
         try {
             for (size_t i = next_++; i < chosen_.size() && !progress_.stop && !failed_; i = next_++)
                 finish(i, results_of(*chosen_[i]));
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::interrupted) fail();
         } catch (...) {
-            const std::lock_guard lock(mutex_);
-            if (!failure_) failure_ = std::current_exception();
-            progress_.stop = true;
+            fail();
         }
     }
 
@@ -73,13 +75,24 @@ class CaseQueue {
     std::vector<SuiteResult> results() {
         if (failure_) std::rethrow_exception(failure_);
         std::vector<SuiteResult> all;
-        for (std::optional<std::vector<SuiteResult>>& results : done_)
-            if (results)
-                for (SuiteResult& result : *results) all.push_back(std::move(result));
+        for (size_t i = 0; i < done_.size(); ++i) {
+            if (!done_[i]) continue;
+            if (i >= told_) work_.finished(*done_[i]);  // one before it was interrupted
+            for (SuiteResult& result : *done_[i]) all.push_back(std::move(result));
+        }
         return all;
     }
 
   private:
+    /// Ends all threads' work for the exception that is handled.
+    void fail() {
+        {
+            const std::lock_guard lock(mutex_);
+            if (!failure_) failure_ = std::current_exception();
+            progress_.stop = true;
+        }
+    }
+
     const SuiteBackend& machine(Backend backend) const {
         return *std::find_if(backends_.begin(), backends_.end(),
                              [&](const SuiteBackend& one) { return one.backend == backend; });
@@ -88,7 +101,7 @@ class CaseQueue {
     /// One backend that is there records a new golden image; all compare.
     std::vector<Backend> backends_for(const SuiteCase& one) const {
         const std::vector<Backend> all = backends_of(one, options_);
-        if (!options_.update) return all;
+        if (!options_.update || one.is_foreign()) return all;
         const auto first = std::find_if(all.begin(), all.end(), [&](Backend b) { return machine(b).obstacle.empty(); });
         return first == all.end() ? all : std::vector{*first};
     }
@@ -110,23 +123,26 @@ class CaseQueue {
             result.golden = one.golden_path(suite_.folder, frame);
             results.push_back(std::move(result));
         }
-        const SuiteBackend& on = machine(backend);
-        if (!on.obstacle.empty()) {
-            for (SuiteResult& result : results) result.verdict = on.obstacle;
+        const SuiteBackend* const on = one.is_foreign() ? nullptr : &machine(backend);
+        if (on && !on->obstacle.empty()) {
+            for (SuiteResult& result : results) result.verdict = on->obstacle;
             return results;
         }
         std::unique_lock<std::mutex> device(device_, std::defer_lock);
         if (backend == Backend::cuda) device.lock();  // its memory is for one scene at a time
         try {
-            const SuiteScene scene = prepare_case(one, suite_.folder, backend, on.devices.options, progress_.stop);
+            const SuiteScene scene = on ? prepare_case(one, suite_.folder, backend, on->devices.options, progress_.stop)
+                                        : prepare_foreign(one, suite_.folder, options_.run_commands);
             for (size_t i = 0; i < results.size(); ++i) {
                 results[i].precision = scene.precision;
                 results[i].notes = scene.notes;
                 check_frame(scene, i, results[i]);
             }
         } catch (const Error& error) {
-            if (error.code() == ExitCode::interrupted) throw;
-            for (SuiteResult& result : results) set_broken(result, error);
+            if (error.kind() == ErrorKind::interrupted) throw;
+            for (SuiteResult& result : results) set_broken(result, error.what());
+        } catch (const std::bad_alloc&) {
+            for (SuiteResult& result : results) set_broken(result, no_memory);
         }
         return results;
     }
@@ -144,21 +160,25 @@ class CaseQueue {
                     unreadable = error.what();
                 }
             }
-            judge(frame, index, golden ? &*golden : nullptr, result);
+            judge(frame, index, golden ? &*golden : nullptr, progress_.stop, result);
             if (!unreadable.empty()) {
                 result.outcome = Outcome::broken;
                 result.verdict = unreadable;
             }
             if (work_.judged) work_.judged(frame, golden ? &*golden : nullptr, result);
         } catch (const Error& error) {
-            if (error.code() == ExitCode::interrupted) throw;
-            set_broken(result, error);
+            if (error.kind() == ErrorKind::interrupted) throw;
+            set_broken(result, error.what());
+        } catch (const std::bad_alloc&) {
+            set_broken(result, no_memory);
         }
     }
 
-    static void set_broken(SuiteResult& result, const Error& error) {
+    static constexpr const char* no_memory = "out of memory; a smaller picture, or fewer `jobs`, need less";
+
+    static void set_broken(SuiteResult& result, const char* why) {
         result.outcome = Outcome::broken;
-        result.verdict = error.what();
+        result.verdict = why;
     }
 
     /// Passes on the results of all cases whose predecessors are done.
@@ -195,7 +215,7 @@ std::vector<Backend> backends_of(const SuiteCase& one, const SuiteRunSettings& o
 
 std::vector<const SuiteCase*> chosen_cases(const Suite& suite, const SuiteRunSettings& options) {
     for (const std::string& name : options.cases) require_known(suite, name, "", false);
-    for (const std::string& pattern : options.filters) require_known(suite, pattern, "--filter ", true);
+    for (const std::string& pattern : options.filters) require_known(suite, pattern, "`filter` ", true);
     std::vector<const SuiteCase*> chosen;
     for (const SuiteCase& one : suite.cases) {
         const auto& names = options.cases;
@@ -208,9 +228,9 @@ std::vector<const SuiteCase*> chosen_cases(const Suite& suite, const SuiteRunSet
     }
     if (chosen.empty())
         fail_usage(options.backend
-                       ? fmt::format("--backend {}: no case that is asked for names it among its \"backends\"",
+                       ? fmt::format("`backend` {}: no case that is asked for names it among its \"backends\"",
                                      backend_name(*options.backend))
-                       : std::string("no case has both a name that is given and one that --filter fits"));
+                       : std::string("no case has both a name that is given and one that `filter` fits"));
     return chosen;
 }
 
@@ -218,6 +238,7 @@ std::vector<SuiteBackend> find_backends(const std::vector<const SuiteCase*>& cho
     std::vector<SuiteBackend> found;
     for (const Backend backend : {Backend::embree, Backend::cuda}) {
         const bool needed = std::any_of(chosen.begin(), chosen.end(), [&](const SuiteCase* one) {
+            if (one->is_foreign()) return false;
             const std::vector<Backend> backends = backends_of(*one, options);
             return std::find(backends.begin(), backends.end(), backend) != backends.end();
         });
@@ -241,12 +262,13 @@ std::vector<SuiteResult> run_cases(const Suite& suite, const std::vector<const S
     CaseQueue queue(suite, chosen, backends, options, work, progress);
     std::vector<std::jthread> threads;
     const size_t jobs = std::min(static_cast<size_t>(options.jobs), chosen.size());
-    while (threads.size() + 1 < jobs) threads.emplace_back([&] { queue.take_cases(); });
+    try {
+        while (threads.size() + 1 < jobs) threads.emplace_back([&] { queue.take_cases(); });
+    } catch (const std::system_error&) {  // as many as the system gives
+    }
     queue.take_cases();
     threads.clear();
-    std::vector<SuiteResult> results = queue.results();
-    if (progress.stop) throw Error(ExitCode::interrupted, "interrupted; no results are written");
-    return results;
+    return queue.results();
 }
 
 }  // namespace cistula

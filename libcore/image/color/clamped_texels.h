@@ -10,12 +10,16 @@ namespace cistula {
 
 /// How many values of a picture (of one channel of one texel) are no radiance, and what took their place.
 struct ClampedTexels {
-    uint64_t negative = 0, infinite = 0, not_numbers = 0;
-    float largest = 1;      // replaces infinity
-    uint32_t x = 0, y = 0;  // of the first texel that has one
-    uint32_t channel = 0;   // of the first
-    float first = 0;        // its value
-    uint64_t values = 0;    // of the whole picture
+    uint64_t negative = 0;
+    uint64_t infinite = 0;
+    uint64_t not_numbers = 0;
+    float largest = 1;  // replaces infinity
+    // of the first texel that has one
+    uint32_t x = 0;
+    uint32_t y = 0;
+    uint32_t channel = 0;  // of the first
+    float first = 0;       // its value
+    uint64_t values = 0;   // of the whole picture
 
     uint64_t count() const { return negative + infinite + not_numbers; }
 

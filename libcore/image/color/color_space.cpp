@@ -48,7 +48,8 @@ dmat3 xyz_from(const ColorSpace& space) {
 }
 
 dmat3 adaptation(const double (&from)[2], const double (&to)[2]) {
-    const dvec3 source = cones * xyz_of(from), target = cones * xyz_of(to);
+    const dvec3 source = cones * xyz_of(from);
+    const dvec3 target = cones * xyz_of(to);
     dmat3 gains(0.0);
     for (int i = 0; i < 3; ++i) gains[i][i] = target[i] / source[i];
     return glm::inverse(cones) * gains * cones;
@@ -61,7 +62,8 @@ bool all_positive(const dvec3& v) {
 /// Whether matrices can be made of the numbers. Those of cameras' spaces are within 2, and their triangles larger than
 /// 0.05.
 bool makes_sense(const ColorSpace& space) {
-    constexpr double most = 10, least_area = 1e-4;
+    constexpr double most = 10;
+    constexpr double least_area = 1e-4;
     for (const auto* xy : {space.red, space.green, space.blue, space.white})
         for (int i = 0; i < 2; ++i)
             if (!(magnitude(xy[i]) <= most)) return false;

@@ -29,8 +29,11 @@ std::vector<double> tag_values(const FileNumbers& file, uint64_t number, uint64_
 }
 
 std::optional<FileColors> colors_of_tiff(const FileNumbers& file) {
-    constexpr uint64_t white_point = 318, primaries = 319, profile = 34675;
-    const std::vector<double> colors = tag_values(file, primaries, 6), white = tag_values(file, white_point, 2);
+    constexpr uint64_t white_point = 318;
+    constexpr uint64_t primaries = 319;
+    constexpr uint64_t profile = 34675;
+    const std::vector<double> colors = tag_values(file, primaries, 6);
+    const std::vector<double> white = tag_values(file, white_point, 2);
     if (colors.empty() || find_tiff_tag(file, profile)) return std::nullopt;
     if (white.empty()) return unknown_colors("PrimaryChromaticities without a WhitePoint");
     FileColors stated;
@@ -40,7 +43,8 @@ std::optional<FileColors> colors_of_tiff(const FileNumbers& file) {
 }
 
 std::optional<FileColors> colors_of_webp(const FileNumbers& file) {
-    constexpr uint64_t most_chunks = 1000, largest_profile = 16 << 20;
+    constexpr uint64_t most_chunks = 1000;
+    constexpr uint64_t largest_profile = 16 << 20;
     uint64_t place = 12;
     for (uint64_t i = 0; i < most_chunks; ++i) {
         const std::string type = file.text(place, 4);
@@ -85,7 +89,8 @@ std::optional<FileColors> colors_of_tga(std::istream& file) {
     if (numbers.text(end + 8, 16) != "TRUEVISION-XFILE") return std::nullopt;
     const uint64_t extension = numbers.at(end, 4);
     if (extension == 0 || numbers.at(extension, 2) < 482) return std::nullopt;
-    const uint64_t over = numbers.at(extension + 478, 2), under = numbers.at(extension + 480, 2);
+    const uint64_t over = numbers.at(extension + 478, 2);
+    const uint64_t under = numbers.at(extension + 480, 2);
     if (over == 0 || under == 0) return std::nullopt;
     return colors_of_gamma(static_cast<double>(over) / static_cast<double>(under));
 }

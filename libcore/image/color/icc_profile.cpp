@@ -15,8 +15,10 @@
 namespace cistula {
 namespace {
 
-constexpr double light_tolerance = 0.002, xyz_tolerance = 0.002;
-constexpr size_t header_bytes = 128, tag_bytes = 12;
+constexpr double light_tolerance = 0.002;
+constexpr double xyz_tolerance = 0.002;
+constexpr size_t header_bytes = 128;
+constexpr size_t tag_bytes = 12;
 
 /// Big-endian numbers of a part of a profile; zeros beyond its end.
 class ProfileBytes {
@@ -43,7 +45,8 @@ ProfileBytes tag(std::string_view profile, std::string_view signature) {
     for (size_t i = 0; i < count; ++i) {
         const size_t entry = header_bytes + 4 + tag_bytes * i;
         if (whole.text(entry, 4) != signature) continue;
-        const size_t offset = whole.unsigned_number(entry + 4, 4), size = whole.unsigned_number(entry + 8, 4);
+        const size_t offset = whole.unsigned_number(entry + 4, 4);
+        const size_t size = whole.unsigned_number(entry + 8, 4);
         if (offset > profile.size() || size > profile.size() - offset) break;
         return ProfileBytes(profile.substr(offset, size));
     }
@@ -59,7 +62,8 @@ double light_of(const ProfileBytes& curve, double x) {
         if (count == 1) return elementary::pow(x, curve.unsigned_number(12, 2) / 256.0);
         const double place = x * static_cast<double>(count - 1);
         const size_t first = std::min(static_cast<size_t>(place), count - 2);
-        const double low = curve.unsigned_number(12 + 2 * first, 2), high = curve.unsigned_number(14 + 2 * first, 2);
+        const double low = curve.unsigned_number(12 + 2 * first, 2);
+        const double high = curve.unsigned_number(14 + 2 * first, 2);
         return (low + (high - low) * (place - static_cast<double>(first))) / 65535;
     }
     constexpr size_t parameters[] = {1, 3, 4, 5, 7};
@@ -127,7 +131,8 @@ std::string profile_name(std::string_view profile) {
         name = description.text(12, description.unsigned_number(8, 4));
         name.resize(std::min(name.find('\0'), name.size()));
     } else if (description.text(0, 4) == "mluc") {
-        const size_t size = description.unsigned_number(20, 4), offset = description.unsigned_number(24, 4);
+        const size_t size = description.unsigned_number(20, 4);
+        const size_t offset = description.unsigned_number(24, 4);
         for (size_t i = 0; i + 1 < size && offset + i + 1 < description.size(); i += 2) {
             const uint32_t code = description.unsigned_number(offset + i, 2);
             name += code < 0x80 ? static_cast<char>(code) : '?';

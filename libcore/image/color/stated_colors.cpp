@@ -19,7 +19,8 @@ namespace {
 /// The chunks of a PNG that say something of its colors; empty: there is none.
 struct PngChunks {
     std::string cicp, gama, chrm;
-    bool srgb = false, profile = false;
+    bool srgb = false;
+    bool profile = false;
 };
 
 PngChunks read_chunks(std::istream& file) {
@@ -53,8 +54,11 @@ PngChunks read_chunks(std::istream& file) {
 FileColors colors_of_cicp(std::string_view code) {
     const auto byte = [&](size_t i) { return static_cast<uint8_t>(code[i]); };
     if (byte(2) == 0 && byte(3) == 1) {
-        const bool rec709 = byte(0) == 1, p3 = byte(0) == 12, rec2020 = byte(0) == 9;
-        constexpr int srgb = 13, linear = 8;
+        const bool rec709 = byte(0) == 1;
+        const bool p3 = byte(0) == 12;
+        const bool rec2020 = byte(0) == 9;
+        constexpr int srgb = 13;
+        constexpr int linear = 8;
         if (byte(1) == srgb && rec709) return known_colors("srgb");
         if (byte(1) == srgb && p3) return known_colors("srgb_p3d65_scene");
         if (byte(1) == linear && rec709) return known_colors("lin_rec709_scene");

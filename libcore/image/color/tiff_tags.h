@@ -54,7 +54,8 @@ struct TiffTag {
     uint64_t size;         // bytes of a value
     uint64_t values;       // place of the first
 
-    static constexpr uint64_t rational = 5, single = 11;
+    static constexpr uint64_t rational = 5;
+    static constexpr uint64_t single = 11;
 };
 
 /// None: the picture does not have that tag. `file` reads in the file's order of bytes.
@@ -62,7 +63,8 @@ inline std::optional<TiffTag> find_tiff_tag(const FileNumbers& file, uint64_t ta
     constexpr uint64_t most_entries = 4096;
     constexpr uint64_t sizes[] = {8, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4};  // by type; later types have 8
     const bool is_big = file.at(2, 2) == 43;
-    const uint64_t directory = is_big ? file.at(8, 8) : file.at(4, 4), entries = file.at(directory, is_big ? 8 : 2);
+    const uint64_t directory = is_big ? file.at(8, 8) : file.at(4, 4);
+    const uint64_t entries = file.at(directory, is_big ? 8 : 2);
     for (uint64_t i = 0; i < std::min(entries, most_entries); ++i) {
         const uint64_t entry = directory + (is_big ? 8 + 20 * i : 2 + 12 * i);
         if (file.at(entry, 2) != tag) continue;

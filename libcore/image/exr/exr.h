@@ -21,7 +21,7 @@ inline constexpr std::string_view exr_magic = "\x76\x2f\x31\x01";
 /// the number of threads: those of TBB for zip and zips, for others OpenEXR's, `most_threads` at most. Half channels
 /// round to nearest even. Attributes: string, int, double, 16 floats -> m44f, 8 floats named "chromaticities" ->
 /// chromaticities (red, green, blue, white xy), other lengths -> floatvector, Ratio -> rational; "screenWindowWidth" ->
-/// float. Throws Error(ExitCode::file) if it cannot be written, std::invalid_argument if the picture is inconsistent or
+/// float. Throws Error (file) if it cannot be written, std::invalid_argument if the picture is inconsistent or
 /// an attribute has a name that OpenEXR reserves
 /// ("compression", "version", ...).
 void write_exr(const std::string& path, const LayeredPicture& picture, int most_threads = INT_MAX);
@@ -34,7 +34,7 @@ void write_exr(const std::string& path, const std::vector<PicturePart>& parts, i
 void set_exr_threads(int threads);
 
 /// Reads all channels as floats, in the order of the file (by name), with the attributes of the types that write_exr
-/// writes; float attributes become doubles. Scan line and tiled files of one part. Throws Error(ExitCode::file).
+/// writes; float attributes become doubles. Scan line and tiled files of one part. Throws Error (file).
 LayeredPicture read_exr(const std::string& path);
 
 /// Reads files of one or several parts, in the order of the file.
@@ -50,7 +50,7 @@ using SizeProblem = std::function<std::string(int64_t width, int64_t height)>;
 /// Reads the numbers of a texture from the data window, of the first part; half, float or uint: R, G and B; or one
 /// channel, Y or the only one, which is gray; or luminance and chroma (Y, RY, BY), by the file's chromaticities.
 /// `colors` becomes what the file says of its colors. Memory for pixels is taken after `size_problem` has seen their
-/// size. Throws Error(ExitCode::file).
+/// size. Throws Error (file).
 ColorPicture read_exr_texture(const std::string& path, const SizeProblem& size_problem = {},
                               FileColors* colors = nullptr);
 

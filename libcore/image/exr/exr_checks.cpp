@@ -18,7 +18,8 @@
 namespace cistula {
 namespace {
 
-constexpr uint32_t magic = 20000630, several_parts = 0x1000;
+constexpr uint32_t magic = 20000630;
+constexpr uint32_t several_parts = 0x1000;
 constexpr size_t longest_name = 255;
 constexpr int64_t offset_bytes = 8;  // of a chunk, in the table that precedes the pixels
 
@@ -149,13 +150,17 @@ class HeaderCheck {
             }
             if (bytes_.place() != end) fail_size(name, type);
         } else if (type == "preview") {
-            const int64_t width = bytes_.number(), height = bytes_.number();
+            const int64_t width = bytes_.number();
+            const int64_t height = bytes_.number();
             if (width != 0 && height > (end - bytes_.place()) / 4 / width) fail("a preview too large");
             if (bytes_.place() + 4 * width * height != end) fail_size(name, type);
         } else if (type == "idmanifest") {
             if (bytes_.number() / 2048 > static_cast<uint32_t>(end - bytes_.place())) fail("a manifest too large");
         } else if (name == "dataWindow" && type == "box2i") {
-            const int64_t left = bytes_.whole(), top = bytes_.whole(), right = bytes_.whole(), bottom = bytes_.whole();
+            const int64_t left = bytes_.whole();
+            const int64_t top = bytes_.whole();
+            const int64_t right = bytes_.whole();
+            const int64_t bottom = bytes_.whole();
             width_ = right - left + 1;
             height_ = bottom - top + 1;
         } else if (name == "tiles" && type == "tiledesc") {
@@ -176,7 +181,10 @@ class HeaderCheck {
     }
 
     HeaderBytes& bytes_;
-    int64_t width_ = 0, height_ = 0, tile_width_ = 0, tile_height_ = 0;
+    int64_t width_ = 0;
+    int64_t height_ = 0;
+    int64_t tile_width_ = 0;
+    int64_t tile_height_ = 0;
 };
 
 constexpr int largest_tile_side = 8192;  // the library holds a whole tile in memory, as its header says

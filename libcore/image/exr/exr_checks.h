@@ -7,10 +7,16 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "base/file_bytes.h"
 
 namespace cistula {
+
+/// Whether one of the library's exceptions says that there is too little memory, be it what a thread of it threw.
+inline bool lacks_memory(const std::exception& failure) {
+    return errno == ENOMEM || std::string_view(failure.what()) == std::bad_alloc().what();
+}
 
 /// Runs `read`; the library's exceptions become an Error that names the file, or std::bad_alloc.
 template <class Read>
@@ -24,7 +30,7 @@ auto with_file_errors(const std::string& path, Read read) {
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& failure) {
-        if (errno == ENOMEM) throw std::bad_alloc();
+        if (lacks_memory(failure)) throw std::bad_alloc();
         throw file_error(path, "read", std::string(failure.what()));
     }
 }

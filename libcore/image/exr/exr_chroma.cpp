@@ -26,7 +26,8 @@ void reconstruct(glm::vec3* line, size_t step, size_t i, size_t count, int chann
 }
 
 void reconstruct(ColorPicture& picture, int channel) {
-    const size_t width = picture.width, height = picture.height;
+    const size_t width = picture.width;
+    const size_t height = picture.height;
     glm::vec3* const texels = picture.texels.data();
     for (size_t y = 0; y < height; y += 2)
         for (size_t x = 1; x < width; x += 2) reconstruct(texels + y * width, 1, x, width, channel);
@@ -37,7 +38,8 @@ void reconstruct(ColorPicture& picture, int channel) {
 dvec3 rgb_of(const glm::vec3& chroma, const dvec3& weights) {
     const double luminance = chroma[1];
     if (chroma[0] == 0 && chroma[2] == 0) return dvec3(luminance);
-    const double red = (chroma[0] + 1.0) * luminance, blue = (chroma[2] + 1.0) * luminance;
+    const double red = (chroma[0] + 1.0) * luminance;
+    const double blue = (chroma[2] + 1.0) * luminance;
     return {red, (luminance - red * weights[0] - blue * weights[2]) / weights[1], blue};
 }
 
@@ -66,17 +68,20 @@ dvec3 desaturated(const dvec3& color, double factor, const dvec3& weights) {
 /// Desaturates what is far more saturated than its four diagonal neighbors; of the rows beyond the picture, the first
 /// repeats row 0, the last the row before it.
 void limit_saturation(ColorPicture& picture, const dvec3& weights) {
-    const size_t width = picture.width, height = picture.height;
+    const size_t width = picture.width;
+    const size_t height = picture.height;
     const auto saturations = [&](size_t y) {
         std::vector<double> row(width);
         for (size_t x = 0; x < width; ++x) row[x] = saturation(dvec3(picture.texels[y * width + x]));
         return row;
     };
-    std::vector<double> here = saturations(0), above = here;
+    std::vector<double> here = saturations(0);
+    std::vector<double> above = here;
     for (size_t y = 0; y < height; ++y) {
         std::vector<double> below = y + 1 < height ? saturations(y + 1) : above;
         for (size_t x = 0; x < width; ++x) {
-            const size_t left = x > 0 ? x - 1 : 0, right = std::min(x + 1, width - 1);
+            const size_t left = x > 0 ? x - 1 : 0;
+            const size_t right = std::min(x + 1, width - 1);
             const double mean = min_or_second(0.25 * (above[left] + above[right] + below[left] + below[right]), 1.0);
             const double most = 0.75 + 0.25 * mean;
             glm::vec3& texel = picture.texels[y * width + x];

@@ -42,12 +42,12 @@ ExrPart part_of(const Imf::Header& header) {
     ExrPart part;
     if (header.hasName()) part.name = header.name();
     check_flat(header, part.name.empty() ? "it" : "part " + part.name);
-    const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
+    const Imath::Box2i data = header.dataWindow();
+    const Imath::Box2i display = header.displayWindow();
     part.data = window_of(data);
     part.display = window_of(display);
     part.width = part.data.width;
     part.height = part.data.height;
-    part.full_height = part.display.height;
     part.attributes = read_attributes(header);
     part.header = exr_header_values(header);
     part.packing = exr_packing(header);
@@ -144,10 +144,12 @@ Imf::FrameBuffer buffer_of(std::vector<ExrChannel>& channels, const Imath::Box2i
 /// Gives each pixel that shares a value with others that of the first.
 template <class Value>
 void repeat_values(std::vector<Value>& values, size_t width, const ExrChannel& channel) {
-    const auto x_step = static_cast<size_t>(channel.x_sampling), y_step = static_cast<size_t>(channel.y_sampling);
+    const auto x_step = static_cast<size_t>(channel.x_sampling);
+    const auto y_step = static_cast<size_t>(channel.y_sampling);
     if (x_step == 1 && y_step == 1) return;
     for (size_t i = 0; i < values.size(); ++i) {
-        const size_t x = i % width, y = i / width;
+        const size_t x = i % width;
+        const size_t y = i / width;
         values[i] = values[(y - y % y_step) * width + (x - x % x_step)];
     }
 }

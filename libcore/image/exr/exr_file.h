@@ -20,7 +20,9 @@ struct ExrChannel {
 
     std::string name;
     Type type = Type::float_;
-    int x_sampling = 1, y_sampling = 1;  // the file has one value for so many pixels, which all of them get
+    // the file has one value for so many pixels, which all of them get
+    int x_sampling = 1;
+    int y_sampling = 1;
     std::vector<float> values;
     std::vector<uint32_t> numbers;  // those of a uint channel, exact; its values are rounded
 
@@ -29,14 +31,16 @@ struct ExrChannel {
 
 /// Numbers of a level of a mip map or a rip map.
 struct ExrLevel {
-    int x = 0, y = 0;
+    int x = 0;
+    int y = 0;
 };
 
 /// What a part's header says.
 struct ExrPart {
-    std::string name;           // files of one part need not have one
-    int width = 0, height = 0;  // of the data window
-    int full_height = 0;        // of the display window
+    std::string name;  // files of one part need not have one
+    // of the data window
+    int width = 0;
+    int height = 0;
     Compression compression = Compression::other;
     PixelRect data, display;
     std::vector<ExrLevel> levels;  // {0, 0} is the whole resolution, and first
@@ -49,7 +53,7 @@ struct ExrPart {
 /// The file stays open, so what is read is what the headers said.
 class ExrFile {
   public:
-    /// Reads the headers. Scan line and tiled parts. Throws Error(ExitCode::file); deep data is refused, and so is a
+    /// Reads the headers. Scan line and tiled parts. Throws Error (file); deep data is refused, and so is a
     /// first part with a `size_problem`.
     explicit ExrFile(const std::string& path, const SizeProblem& size_problem = {});
     ~ExrFile();
@@ -58,7 +62,7 @@ class ExrFile {
 
     const std::vector<ExrPart>& parts() const { return parts_; }
 
-    /// The values of channels of a part, in this order; both are numbers in parts(). Throws Error(ExitCode::file).
+    /// The values of channels of a part, in this order; both are numbers in parts(). Throws Error (file).
     std::vector<ExrChannel> read(size_t part, const std::vector<size_t>& channels) const;
 
     /// Those of a level, whose data window this is.
@@ -66,10 +70,10 @@ class ExrFile {
                                  PixelRect& window) const;
 
     /// A picture whose texels have the values of the first channel as red, of the second as green, of the third as
-    /// blue; those of subsampled channels in the first of their pixels alone. Throws Error(ExitCode::file).
+    /// blue; those of subsampled channels in the first of their pixels alone. Throws Error (file).
     ColorPicture read_colors(size_t part, const std::vector<size_t>& channels) const;
 
-    /// Throws Error(ExitCode::file) unless all pixels of a part are there.
+    /// Throws Error (file) unless all pixels of a part are there.
     void check_complete(size_t part) const;
 
   private:
@@ -80,7 +84,7 @@ class ExrFile {
     std::vector<ExrPart> parts_;
 };
 
-/// All of a file as it stands: parts, levels, channels and attributes. Throws Error(ExitCode::file); deep data is
+/// All of a file as it stands: parts, levels, channels and attributes. Throws Error (file); deep data is
 /// refused.
 StoredFile read_stored_exr(const std::string& path);
 

@@ -89,7 +89,8 @@ std::map<std::string, StoredAttribute> exr_header_values(const Imf::Header& head
         if (is_said_elsewhere(entry.name())) continue;
         MemoryStream stream;
         entry.attribute().writeValueTo(stream, Imf::EXR_VERSION);
-        const std::string type = entry.attribute().typeName(), bytes = stream.take();
+        const std::string type = entry.attribute().typeName();
+        const std::string bytes = stream.take();
         values[entry.name()] = {type, bytes, text_of(type, bytes)};
     }
     return values;

@@ -170,8 +170,9 @@ class Lines {
 
     /// The picture's lines from `first` on.
     Imf::FrameBuffer buffer(int first, int count) {
-        const auto width = static_cast<size_t>(picture_.width), begin = static_cast<size_t>(first) * width,
-                   end = begin + static_cast<size_t>(count) * width;
+        const auto width = static_cast<size_t>(picture_.width);
+        const auto begin = static_cast<size_t>(first) * width;
+        const auto end = begin + static_cast<size_t>(count) * width;
         for (size_t i = 0; i < of_channels_.size(); ++i)
             of_channels_[i].resize((end - begin) * (picture_.channels[i].half ? sizeof(half) : sizeof(float)));
         tbb::parallel_for(size_t{0}, (end - begin + block - 1) / block, [&](size_t number) {
@@ -179,7 +180,8 @@ class Lines {
             const size_t at = begin + number * block;
             write(at, std::min(at + block, end), number * block);
         });
-        const int top = picture_.y + first, left = picture_.x;
+        const int top = picture_.y + first;
+        const int left = picture_.x;
         const Imath::Box2i window(Imath::V2i(left, top), Imath::V2i(left + picture_.width - 1, top + count - 1));
         Imf::FrameBuffer buffer;
         for (size_t i = 0; i < of_channels_.size(); ++i) {
@@ -268,7 +270,7 @@ void write_parts(const std::string& path, const std::vector<PartToWrite>& parts,
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& failure) {
-        if (errno == ENOMEM) throw std::bad_alloc();
+        if (lacks_memory(failure)) throw std::bad_alloc();
         if (stream.error_number() == 0) throw file_error(path, "write", std::string(failure.what()));
     }
     const bool lacked_memory = errno == ENOMEM;

@@ -71,7 +71,8 @@ class ChunkPacker {
     }
 
     uint16_t* put_line(const LayeredPicture::Channel& channel, const LayeredPicture& picture, int y, uint16_t* to) {
-        const auto width = static_cast<size_t>(picture.width), first = static_cast<size_t>(y) * width;
+        const auto width = static_cast<size_t>(picture.width);
+        const auto first = static_cast<size_t>(y) * width;
         line_.resize(width);
         channel.put(first, first + width, line_.data());
         if (channel.half) {

@@ -20,7 +20,8 @@ namespace cistula {
 /// A picture in linear RGB, Rec. 709 unless something else is said, row-major from the top left; textures are read into
 /// it.
 struct ColorPicture {
-    uint32_t width = 0, height = 0;
+    uint32_t width = 0;
+    uint32_t height = 0;
     std::vector<glm::vec3> texels;
     std::vector<float> alpha = {};  // of texels that are not premultiplied; empty: all are opaque
 };
@@ -45,9 +46,14 @@ constexpr bool is_dwa(Compression compression) {
 /// The contents of an EXR file: named channels of width x height floats each, row-major from the top left, in memory or
 /// made as they are written.
 struct LayeredPicture {
-    int width = 0, height = 0;  // of the data window
-    int x = 0, y = 0;           // top left corner in the display window
-    int display_width = 0, display_height = 0;
+    // of the data window
+    int width = 0;
+    int height = 0;
+    // top left corner in the display window
+    int x = 0;
+    int y = 0;
+    int display_width = 0;
+    int display_height = 0;
     struct Channel {
         std::string name;   // "R", "error.R", "Z", "N.X", ...
         bool half = false;  // stored as half; id, Z, samples, cost are always float

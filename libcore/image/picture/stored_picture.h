@@ -48,7 +48,9 @@ inline double largest_code(StoredType type) {
 struct StoredChannel {
     std::string name;
     StoredType type = StoredType::float_;
-    int x_sampling = 1, y_sampling = 1;  // pixels of the file's pixel space for one value of the file
+    // pixels of the file's pixel space for one value of the file
+    int x_sampling = 1;
+    int y_sampling = 1;
     std::variant<std::vector<float>, std::vector<double>, std::vector<uint32_t>, std::vector<int32_t>> values;
 };
 

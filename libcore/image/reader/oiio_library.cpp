@@ -6,7 +6,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "base/machine_memory.h"
+#include "base/machine.h"
 
 namespace cistula {
 #ifdef CISTULA_OIIO_MODULE

@@ -14,13 +14,18 @@ namespace {
 
 /// Whether a JPEG file has the marker of its end. Segments are skipped, since they may hold whole pictures.
 bool has_jpeg_end(std::ifstream& file) {
-    constexpr int end = 0xd9, first_restart = 0xd0, start = 0xd8, stuffed = 0x00, temporary = 0x01;
+    constexpr int end = 0xd9;
+    constexpr int first_restart = 0xd0;
+    constexpr int start = 0xd8;
+    constexpr int stuffed = 0x00;
+    constexpr int temporary = 0x01;
     for (int byte = file.get(); file; byte = file.get()) {
         if (byte != 0xff) continue;
         while (byte == 0xff) byte = file.get();
         if (byte == end) return true;
         if (byte == stuffed || byte == temporary || (byte >= first_restart && byte <= start)) continue;
-        const int high = file.get(), low = file.get();
+        const int high = file.get();
+        const int low = file.get();
         if (file) file.seekg(std::max(high * 256 + low - 2, 0), std::ios::cur);
     }
     return false;
@@ -37,7 +42,8 @@ class DdsHeader {
 
     /// Bytes that the file has at least, which hold the largest picture of each face.
     uint64_t least_size() const {
-        const uint64_t height = number(12), width = number(16);
+        const uint64_t height = number(12);
+        const uint64_t width = number(16);
         const uint64_t faces = (number(112) & 0x200) != 0 ? std::bitset<32>(number(112) & 0xfc00).count() : 1;
         const uint64_t picture = is_compressed() ? (width + 3) / 4 * ((height + 3) / 4) * (has_small_blocks() ? 8 : 16)
                                                  : width * height * std::max<uint64_t>((number(88) + 7) / 8, 1);
@@ -47,7 +53,9 @@ class DdsHeader {
     /// Whether a channel that the pixels have is given no bits of them.
     bool has_empty_channel() const {
         const uint64_t flags = number(80);
-        const bool alpha = (flags & 0x3) != 0, rgb = (flags & 0x40) != 0, luminance = (flags & 0x20000) != 0;
+        const bool alpha = (flags & 0x3) != 0;
+        const bool rgb = (flags & 0x40) != 0;
+        const bool luminance = (flags & 0x20000) != 0;
         return !is_compressed() && ((alpha && number(104) == 0) || ((rgb || luminance) && number(92) == 0) ||
                                     (rgb && (number(96) == 0 || number(100) == 0)));
     }
@@ -85,7 +93,9 @@ std::optional<uint64_t> tiff_number(const FileNumbers& file, uint64_t tag) {
 }
 
 std::string tiff_damage(std::ifstream& file) {
-    constexpr uint64_t bits_tag = 258, photometric_tag = 262, white_is_zero = 0;
+    constexpr uint64_t bits_tag = 258;
+    constexpr uint64_t photometric_tag = 262;
+    constexpr uint64_t white_is_zero = 0;
     const FileNumbers numbers(file, file.get() == 'I');
     const std::optional<uint64_t> bits = tiff_number(numbers, bits_tag);
     if (!bits)

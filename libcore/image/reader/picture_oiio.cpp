@@ -45,13 +45,15 @@ void limit_library(uint64_t texels) {
 bool read_rows(OIIO::ImageInput& input, int subimage, int level, int channels, OIIO::TypeDesc format,
                const OiioHost& host) {
     const OIIO::ImageSpec spec = input.spec();
-    const size_t texel = static_cast<size_t>(channels) * format.size(), row = texel * static_cast<size_t>(spec.width);
+    const size_t texel = static_cast<size_t>(channels) * format.size();
+    const size_t row = texel * static_cast<size_t>(spec.width);
     constexpr size_t piece = 16 << 20;
     const int step = spec.tile_width > 0 ? spec.tile_height : static_cast<int>(std::clamp<size_t>(piece / row, 1, 256));
     if (step < 1) return fail(host, "its tiles have no height");
     std::vector<char> samples(row * static_cast<size_t>(std::min(step, spec.height)));
     for (int y = 0; y < spec.height; y += std::min(step, spec.height - y)) {
-        const int first = spec.y + y, end = first + std::min(step, spec.height - y);
+        const int first = spec.y + y;
+        const int end = first + std::min(step, spec.height - y);
         const bool done =
             spec.tile_width > 0
                 ? input.read_tiles(subimage, level, spec.x, spec.x + spec.width, first, end, spec.z, spec.z + 1, 0,

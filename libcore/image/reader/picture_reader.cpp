@@ -23,16 +23,17 @@ TextureLimits within_reach(TextureLimits limits) {
     return limits;
 }
 
-/// Clamps what is no radiance, or throws where that is not wanted. `from` opens the message.
-void clamp_or_refuse(ColorPicture& picture, ClampedTexels* clamped, ExitCode code, const std::string& from) {
+/// Clamps what is no radiance, or throws where that is not wanted. `place`: of the message.
+void clamp_or_refuse(ColorPicture& picture, ClampedTexels* clamped, ErrorKind kind, const std::string& place) {
     const ClampedTexels found = clamp_texels(picture);
-    if (!clamped && found.count() > 0) throw Error(code, from + found.refusal());
+    if (!clamped && found.count() > 0) throw Error(kind, found.refusal()).at(place);
     if (clamped) *clamped = found;
 }
 
 /// Whether a file is an EXR, by extension or by content. Throws Error where there is nothing in it.
 bool is_exr(const std::string& path) {
-    if (regular_file_size(path) == 0) throw file_error(path, "read", std::string("it is empty; give a picture"));
+    check_readable(path);
+    if (regular_file_size(path) == 0) throw file_error(path, "read", std::string("it is empty"), "give a picture");
     return lower_extension(path) == ".exr" || read_file_start(path, exr_magic.size()) == exr_magic;
 }
 
@@ -95,12 +96,14 @@ ColorPicture TextureReader::read(const std::string& path, ClampedTexels* clamped
         ask(path, exr ? ReadKind::exr_texture : ReadKind::texture,
             [&](ReaderReply& reply) { picture = receive_texture(reply, encoding); });
     }
-    clamp_or_refuse(picture, clamped, ExitCode::file, path + ": ");
+    clamp_or_refuse(picture, clamped, ErrorKind::file, path);
     return picture;
 }
 
 ColorPicture TextureReader::decode(const TexelArray& array, ClampedTexels* clamped, std::string_view encoding) {
-    const auto refuse = [](const std::string& text) { throw Error(ExitCode::usage, "the texels: " + text); };
+    const auto refuse = [](const std::string& problem, const char* remedy = "") {
+        throw Error(ErrorKind::usage, problem, remedy).at("the texels");
+    };
     const std::string problem = texture_size_problem(array.width, array.height, left_, limits_.bytes);
     if (!problem.empty()) refuse(problem);
     const size_t texels = size_t{array.width} * array.height;
@@ -109,15 +112,16 @@ ColorPicture TextureReader::decode(const TexelArray& array, ClampedTexels* clamp
         try {
             return file_encoding(encoding, {}, is_floating);
         } catch (const std::runtime_error& unknown) {
-            throw Error(ExitCode::usage, std::string("the texels: ") + unknown.what());
+            throw Error(ErrorKind::usage, unknown.what()).at("the texels");
         }
     };
     std::visit(
         [&]<class Value>(const std::vector<Value>& values) {
             if (array.channels == 0 || values.size() % array.channels != 0 || values.size() / array.channels != texels)
                 refuse("there are " + std::to_string(values.size()) + " numbers for " + std::to_string(array.width) +
-                       "x" + std::to_string(array.height) + " texels of " + std::to_string(array.channels) +
-                       " channels; give one for each channel of each");
+                           "x" + std::to_string(array.height) + " texels of " + std::to_string(array.channels) +
+                           " channels",
+                       "give one for each channel of each");
             const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
             picture.texels.reserve(texels);
             TexelDecoder(meaning(std::is_same_v<Value, float>), sizeof(Value))
@@ -125,7 +129,7 @@ ColorPicture TextureReader::decode(const TexelArray& array, ClampedTexels* clamp
         },
         array.values);
     left_ -= texel_bytes * texels;
-    clamp_or_refuse(picture, clamped, ExitCode::usage, "the texels: ");
+    clamp_or_refuse(picture, clamped, ErrorKind::usage, "the texels");
     return picture;
 }
 

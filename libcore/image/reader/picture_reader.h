@@ -31,7 +31,7 @@ class GuardedReader {
     GuardedReader(const TextureLimits& limits, std::string users);
     ~GuardedReader();
 
-    /// Asks for a file, and calls `take` with the answer. Throws Error(ExitCode::file) with the path, and
+    /// Asks for a file, and calls `take` with the answer. Throws Error (file) with the path, and
     /// std::bad_alloc.
     void ask(const std::string& path, ReadKind kind, const std::function<void(class ReaderReply& reply)>& take);
 
@@ -47,7 +47,9 @@ class GuardedReader {
 /// channels. The first three are red, green and blue; the first is gray where there are fewer. The largest integer is
 /// white.
 struct TexelArray {
-    uint32_t width = 0, height = 0, channels = 3;
+    uint32_t width = 0;
+    uint32_t height = 0;
+    uint32_t channels = 3;
     std::variant<std::vector<uint8_t>, std::vector<uint16_t>, std::vector<float>> values;
 };
 
@@ -60,10 +62,10 @@ class TextureReader : public GuardedReader {
     /// other formats through OpenImageIO. `encoding`, the name of one of color_encodings, says what its numbers mean;
     /// without it the file does, and if that says nothing, integers are sRGB, floating-point numbers linear Rec. 709.
     /// Values that are then negative, infinite or not a number are clamped and counted in `clamped`; without that they
-    /// are an error. Throws Error(ExitCode::file) with the path, and std::bad_alloc.
+    /// are an error. Throws Error (file) with the path, and std::bad_alloc.
     ColorPicture read(const std::string& path, ClampedTexels* clamped, std::string_view encoding = {});
 
-    /// A texture of an array, in the same way. Throws Error(ExitCode::usage).
+    /// A texture of an array, in the same way. Throws Error (usage).
     ColorPicture decode(const TexelArray& array, ClampedTexels* clamped, std::string_view encoding = {});
 };
 
@@ -74,7 +76,7 @@ class StoredReader : public GuardedReader {
     explicit StoredReader(const TextureLimits& limits = {});
 
     /// All of a file: parts or subimages, levels, channels, attributes, no value converted. Throws
-    /// Error(ExitCode::file) with the path, and std::bad_alloc.
+    /// Error (file) with the path, and std::bad_alloc.
     StoredFile read(const std::string& path);
 };
 

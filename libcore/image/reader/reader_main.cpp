@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/machine_memory.h"
+#include "base/machine.h"
 #include "image/color/stated_colors.h"
 #include "image/exr/exr.h"
 #include "image/reader/reader_answer.h"
@@ -60,7 +60,8 @@ void answer_exr(const std::string& path, Answer& answer) {
         return answer.fail(std::string(message.starts_with(before) ? message.substr(before.size()) : message));
     }
     const char* const names[] = {"R", "G", "B"};
-    const auto width = static_cast<int32_t>(picture.width), height = static_cast<int32_t>(picture.height);
+    const auto width = static_cast<int32_t>(picture.width);
+    const auto height = static_cast<int32_t>(picture.height);
     if (!answer.picture({0, 0, width, height, 0, 0, width, height, 0, 3, StoredType::float_, "openexr", names})) return;
     answer.colors(colors);
     answer.samples(picture.texels.data(), picture.texels.size());
@@ -131,7 +132,8 @@ void answer_one() {
         return send_failure(error.what());
     }
     const MemoryLimit memory = memory_limit(request);
-    const pid_t self = getpid(), child = fork();
+    const pid_t self = getpid();
+    const pid_t child = fork();
     if (child == 0) {
         end_with(self);
         answer_and_end(path, request, memory, oiio);

@@ -49,7 +49,8 @@ std::vector<fs::path> directories_beside() {
     std::vector<fs::path> directories;
     std::error_code failure;
     for (const fs::path& file : {own_file(), fs::read_symlink("/proc/self/exe", failure)}) {
-        const fs::path directory = file.parent_path(), prefix = directory.parent_path();
+        const fs::path directory = file.parent_path();
+        const fs::path prefix = directory.parent_path();
         for (const fs::path& one : {directory, prefix / "lib" / "cistula", prefix / "lib"})
             if (one.is_absolute() && std::find(directories.begin(), directories.end(), one) == directories.end())
                 directories.push_back(one);

@@ -59,7 +59,9 @@ class ReaderReply {
     ReplyHead ahead_{};  // of the samples that come next
     uint64_t texels_left_ = 0;
     size_t texel_ = 0;  // bytes
-    uint32_t pictures_ = 0, attributes_ = 0, level_ = 0;
+    uint32_t pictures_ = 0;
+    uint32_t attributes_ = 0;
+    uint32_t level_ = 0;
 };
 
 /// The texture of an answer, by the encoding of that name or, without one, the file's; single channels are gray. Throws

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "base/file_bytes.h"
-#include "base/machine_memory.h"
+#include "base/machine.h"
 
 namespace cistula {
 
@@ -32,7 +32,7 @@ std::string size_problem(bool is_texture, int64_t width, int64_t height, uint64_
     return size + (is_texture ? ", which takes " : ", and its values take ") + gigabytes(texel * pixels) +
            " of memory; " + (is_texture ? "textures" : "pictures") + " may take " + gigabytes(limit) +
            (left < limit ? ", and others take " + gigabytes(limit - left) : "") + "; give a smaller one" +
-           (is_texture ? ", or raise the limit (--max-texture-gb of render)" : "");
+           (is_texture ? ", or raise the limit (`max_texture_gb` of render)" : "");
 }
 
 }  // namespace cistula

@@ -34,9 +34,9 @@ OiioViewHost host_of(Answers& answers) {
 [[noreturn]] void fail_unknown(const std::string& name, const std::vector<std::string>& views,
                                const std::string& why_no_more) {
     const std::vector<std::string_view> known(views.begin(), views.end());
-    throw Error(ExitCode::usage,
-                fmt::format("--view {}: there is no such view; {}{}{}", name, nearest_first(name, known, "views"),
-                            why_no_more.empty() ? "" : "; ", why_no_more));
+    throw Error(ErrorKind::usage, "there is no such view",
+                nearest_first(name, known, "views") + (why_no_more.empty() ? "" : "; ") + why_no_more)
+        .of("view", name);
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ ConfigView::ConfigView(const std::string& name, const std::vector<std::string>& 
     }
     if (view_) return;
     if (!config.empty() && !answers.failure.empty())
-        throw Error(ExitCode::file, fmt::format("--view {}: $OCIO, {}: {}", name, config, answers.failure));
+        throw Error(ErrorKind::file, answers.failure).at("$OCIO, " + config).of("view", name);
     answers.views.insert(answers.views.begin(), own.begin(), own.end());
     fail_unknown(name, answers.views, answers.failure);
 }
@@ -79,7 +79,7 @@ void ConfigView::apply(ColorPicture& picture) const {
 std::string ConfigView::warning() const {
     const char* const assumed = module_->assumed_space(view_);
     return assumed ? fmt::format(
-                         "--view: the config of $OCIO has neither a space of the name lin_rec709_scene nor the "
+                         "`view`: the config of $OCIO has neither a space of the name lin_rec709_scene nor the "
                          "role aces_interchange; linear Rec. 709 is taken for its scene_linear, {}",
                          assumed)
                    : "";

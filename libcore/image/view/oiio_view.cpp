@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -92,6 +93,8 @@ OiioView* opened_view(const std::string& file, const std::string& name, const Oi
 OiioView* open_view(const char* config, const char* name, const OiioViewHost* host) noexcept {
     try {
         return opened_view(config, name, *host);
+    } catch (const std::bad_alloc&) {
+        host->failed(host->self, "Cannot allocate memory");  // as failure_of() takes it
     } catch (const std::exception& error) {
         host->failed(host->self, error.what());
     } catch (...) {

@@ -8,7 +8,9 @@
 namespace cistula {
 
 glm::vec3 filmic_color(const glm::vec3& color) {
-    constexpr double contrast = 1.2, gray = 0.18, largest = std::numeric_limits<float>::max();
+    constexpr double contrast = 1.2;
+    constexpr double gray = 0.18;
+    constexpr double largest = std::numeric_limits<float>::max();
     static const double knee = elementary::pow(gray, contrast) * (1 - gray) / gray;
     double light[3], most = 0;
     for (int c = 0; c < 3; ++c) {
@@ -16,7 +18,8 @@ glm::vec3 filmic_color(const glm::vec3& color) {
         most = std::max(most, light[c]);
     }
     if (most == 0) return glm::vec3(0);
-    const double power = elementary::pow(most, contrast), tone = power / (power + knee);
+    const double power = elementary::pow(most, contrast);
+    const double tone = power / (power + knee);
     const double white = tone * tone * tone * tone * tone * tone;
     glm::vec3 shown;
     for (int c = 0; c < 3; ++c) shown[c] = static_cast<float>(tone * ((1 - white) * (light[c] / most) + white));

@@ -1,4 +1,4 @@
-#include "render/frame/camera_sides.h"
+#include "render/frame/frame_view.h"
 
 #include <array>
 #include <vector>
@@ -6,7 +6,7 @@
 #include "base/box.h"
 #include "cistula/geometry/shared_plane.h"
 #include "scene/compile/lights/compile_lights.h"
-#include "scene/compile/solids/solid_planes.h"
+#include "scene/compile/solids/compile_solids.h"
 
 namespace cistula {
 namespace {

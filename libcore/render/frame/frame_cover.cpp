@@ -4,10 +4,33 @@
 #include <cmath>
 
 #include "base/box.h"
-#include "render/frame/picture_margins.h"
+#include "cistula/transport/pixel.h"
 
 namespace cistula {
 namespace {
+
+// ---- margins by which projected outlines are enlarged, so that rounding moves nothing out of them
+
+/// Margin around projected outlines in pixels, for the rounding of the projection in double.
+constexpr double picture_margin = 0x1p-6;
+
+/// Growth of projected bodies in the frame of reference: far above the rounding of rays and faces in either precision
+/// (docs/rules.md, 1 and 2). `extent`: the scene's M.
+double picture_growth(const FrameView& frame, double extent) {
+    constexpr double share_of_extent = 0x1p-16;
+    constexpr double share_of_distance = 0x1p-44;
+    return share_of_extent * extent + share_of_distance * length(frame.camera.position);
+}
+
+/// Whether the margins suffice; they do not for cameras very far away or with very wide views.
+bool margins_suffice(const FrameView& frame, double extent) {
+    constexpr double farthest = 0x1p40;
+    constexpr double widest_tangent = 256;
+    return length(frame.camera.position) <= farthest * extent &&
+           frame.camera.tan_half_width * std::max(1.0, double(frame.height) / frame.width) <= widest_tangent;
+}
+
+// ---- outlines
 
 /// Distance of the near plane that clips hulls, as a share of their growth. Any part of a hull that is nearer, in a
 /// view allowed by margins_suffice, is so near that the grown hull contains the camera and its outline is wider than
@@ -64,7 +87,8 @@ std::optional<std::vector<FrameCover::Point>> FrameCover::projected(const Hull& 
     const Camera& camera = frame.camera;
     if (!margins_suffice(frame, extent)) return {};
     const double growth = picture_growth(frame, extent);
-    const double reach = hull.reach + growth, nearest = share_of_growth * growth;
+    const double reach = hull.reach + growth;
+    const double nearest = share_of_growth * growth;
     std::vector<Vec3<double>> ahead, behind;  // along right, up and forward; cubes instead of balls
     for (const Vec3<double>& point : hull.points) {
         const Vec3<double> there = point - camera.position;
@@ -105,7 +129,8 @@ FrameCover::Outline FrameCover::filled(size_t number, const std::vector<Point>& 
     std::vector<Reach> reached(size_t(last_band - first_band) + 1);
     for (size_t i = 0; i < corners.size(); ++i) {
         const Point &a = corners[i], &b = corners[(i + 1) % corners.size()];
-        const double top = std::min(a.y, b.y), bottom = std::max(a.y, b.y);
+        const double top = std::min(a.y, b.y);
+        const double bottom = std::max(a.y, b.y);
         const double first = std::max(std::floor((top - picture_margin) / band_rows), first_band);
         const double last = std::min(std::floor((bottom + picture_margin) / band_rows), last_band);
         for (double band = first; band <= last; ++band) {
@@ -128,7 +153,8 @@ FrameCover::Outline FrameCover::filled(size_t number, const std::vector<Point>& 
     }
     outline.first_band = int(first_band);
     for (const Reach& reach : reached) {
-        const double low = std::floor(reach.low - picture_margin), high = std::ceil(reach.high + picture_margin);
+        const double low = std::floor(reach.low - picture_margin);
+        const double high = std::ceil(reach.high + picture_margin);
         const bool any = low < rect_.width && high > 0;
         outline.runs.push_back(any ? PixelRun{int(std::max(low, 0.0)), int(std::min(high, double(rect_.width)))}
                                    : PixelRun());

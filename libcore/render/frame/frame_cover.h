@@ -14,7 +14,8 @@ namespace cistula {
 
 /// Columns [begin, end) of a rectangle.
 struct PixelRun {
-    int begin = 0, end = 0;
+    int begin = 0;
+    int end = 0;
 
     bool operator==(const PixelRun&) const = default;
 };
@@ -56,7 +57,8 @@ class FrameCover {
     template <class Visit>
     void for_each_part(int row, int from, int to, const Visit& visit) const {
         for (const PixelRun& run : runs(row)) {
-            const int begin = std::clamp(run.begin, from, to), end = std::clamp(run.end, from, to);
+            const int begin = std::clamp(run.begin, from, to);
+            const int end = std::clamp(run.end, from, to);
             if (begin > from) visit(from, begin, false);
             if (end > begin) visit(begin, end, true);
             from = std::max(from, end);

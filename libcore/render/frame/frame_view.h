@@ -4,11 +4,16 @@
 #include "base/error.h"
 #include "cistula/transport/pixel.h"
 #include "cistula/transport/pixel_sums.h"
-#include "render/frame/camera_sides.h"
 #include "render/renderer.h"
 #include "scene/compile/compiled_scene.h"
 
 namespace cistula {
+
+/// Sets where a frame's rays start: at the camera, or, where it lies on faces to within 16 times the rounding of its
+/// distance from their planes, 32 u M off each plane, on either side. Of more than three planes the first three count.
+/// The camera's position is already in the frame, and so is `half_unit`, which rounding may have moved it by.
+template <class Real>
+void set_camera_sides(const CompiledScene<Real>& scene, const glm::dvec3& half_unit, FrameView& frame);
 
 /// The parameters of adaptive sampling for a frame with a target error.
 template <class Real>
@@ -22,20 +27,23 @@ void set_lattice(const CompiledScene<Real>& scene, const FrameSettings& settings
 /// The view of a frame, except the solids around the camera, which need an intersector (find_camera_solids).
 template <class Real>
 FrameView frame_view(const CompiledScene<Real>& scene, const CameraFrame& camera, const FrameSettings& settings) {
-    const auto refuse = [](const std::string& what) { throw Error(ExitCode::usage, what); };
+    const auto refuse = [](const char* key, auto value, const std::string& right) {
+        throw Error(ErrorKind::usage, "", "must be " + right).of(key, std::to_string(value));
+    };
     if (settings.depth < 1 || settings.depth > largest_depth)
-        refuse("depth " + std::to_string(settings.depth) + ": must be from 1 to " + std::to_string(largest_depth));
+        refuse("depth", settings.depth, "from 1 to " + std::to_string(largest_depth));
     if (settings.supersample < 1 || settings.supersample > 64)
-        refuse("supersample " + std::to_string(settings.supersample) + ": must be from 1 to 64");
-    if (!(settings.cutoff >= 0)) refuse("cutoff: must be at least 0");
-    if (!(settings.target_error >= 0)) refuse("target error: must be at least 0");
+        refuse("supersample", settings.supersample, "from 1 to 64");
+    if (!(settings.cutoff >= 0)) refuse("cutoff", settings.cutoff, "at least 0");
+    if (!(settings.target_error >= 0)) refuse("target_error", settings.target_error, "at least 0");
     if (settings.layers.light && scene.layer_names->light_groups.size() > size_t(most_light_groups))
-        refuse("light layers: the scene has " + std::to_string(scene.layer_names->light_groups.size()) +
-               " groups of lights; put lights together with \"group\", at most " + std::to_string(most_light_groups) +
-               " groups");
+        throw Error(ErrorKind::usage,
+                    "light layers: the scene has " + std::to_string(scene.layer_names->light_groups.size()) +
+                        " groups of lights",
+                    "put lights together with \"group\", at most " + std::to_string(most_light_groups) + " groups");
     if (settings.max_samples < least_lattice_samples || settings.max_samples > lattice_samples)
-        refuse("max samples " + std::to_string(settings.max_samples) + ": must be from " +
-               std::to_string(least_lattice_samples) + " to " + std::to_string(lattice_samples));
+        refuse("max_samples", settings.max_samples,
+               "from " + std::to_string(least_lattice_samples) + " to " + std::to_string(lattice_samples));
     const double unit = elementary::power_of_two(scene.scale);
     FrameView frame;
     frame.camera = camera.camera;

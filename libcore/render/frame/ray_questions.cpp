@@ -44,12 +44,12 @@ size_t first_wrong(size_t count, const Visit& visit) {
 }
 
 [[noreturn]] void refuse(const char* what, size_t i, const char* why) {
-    throw Error(ExitCode::usage, fmt::format("{} {}: {}", what, i, why));
+    throw Error(ErrorKind::usage, fmt::format("{} {}: {}", what, i, why));
 }
 
 void require_pairs(size_t starts, size_t ends, const char* what) {
     if (starts != ends)
-        throw Error(ExitCode::usage, fmt::format("{}: there are {} and {}; must be as many", what, starts, ends));
+        throw Error(ErrorKind::usage, fmt::format("{}: there are {} and {}; must be as many", what, starts, ends));
 }
 
 }  // namespace
@@ -59,7 +59,8 @@ RayHits ray_hits(const CompiledScene<Real>& scene, std::span<const glm::dvec3> o
                  std::span<const glm::dvec3> directions, const Answerer<RayAnswer>& answer) {
     require_pairs(origins.size(), directions.size(), "origins and directions of rays");
     const size_t count = origins.size();
-    const double unit = elementary::power_of_two(scene.scale), unit_length = 1 / unit;
+    const double unit = elementary::power_of_two(scene.scale);
+    const double unit_length = 1 / unit;
     std::vector<RayQuestion> questions(count);
     const size_t wrong = first_wrong(count, [&](size_t i) {
         const double square = dot(directions[i], directions[i]);

@@ -1,13 +1,14 @@
-#include <algorithm>
-#include <array>
-#include <memory>
+#include "render/record/film_channel.h"
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <nlohmann/json.hpp>
 
-#include "render/record/film_channel.h"
-#include "render/record/murmur3.h"
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <memory>
 
 namespace cistula {
 namespace {
@@ -32,7 +33,8 @@ std::vector<Mattes> kinds(const Film& film, const OutputChannels& channels) {
     std::vector<Mattes> mattes;
     if (film.layers.plan.objects < 0) return mattes;
     const LayerNames& names = *film.layers.names;
-    const size_t solids = names.objects.size(), all = 1 + solids + names.visible_lights.size();
+    const size_t solids = names.objects.size();
+    const size_t all = 1 + solids + names.visible_lights.size();
     if (channels.object_mattes) {
         std::vector<std::string> of(all);
         std::copy(names.objects.begin(), names.objects.end(), of.begin() + 1);
@@ -75,7 +77,8 @@ class RankedBlocks {
 
   private:
     struct Block {
-        size_t first = 0, last = 0;
+        size_t first = 0;
+        size_t last = 0;
         std::vector<Ranks> ranks;
         std::vector<Rank> met;  // by one pixel; kept for its memory
     };
@@ -157,6 +160,41 @@ std::vector<std::pair<std::string, std::string>> cryptomatte_attributes(const Fi
         attributes.emplace_back(place + "manifest", manifest_of(mattes));
     }
     return attributes;
+}
+
+namespace {
+
+constexpr uint32_t first_factor = 0xcc9e2d51u;
+constexpr uint32_t second_factor = 0x1b873593u;
+
+uint32_t mixed(uint32_t word) {
+    return std::rotl(word * first_factor, 15) * second_factor;
+}
+
+}  // namespace
+
+uint32_t murmur3(std::string_view text) {
+    const auto byte = [&](size_t i) { return uint32_t{static_cast<unsigned char>(text[i])}; };
+    uint32_t hash = 0;
+    const size_t whole = text.size() / 4 * 4;
+    for (size_t i = 0; i < whole; i += 4) {
+        hash ^= mixed(byte(i) | byte(i + 1) << 8 | byte(i + 2) << 16 | byte(i + 3) << 24);
+        hash = std::rotl(hash, 13) * 5 + 0xe6546b64u;
+    }
+    uint32_t rest = 0;
+    for (size_t i = text.size(); i-- > whole;) rest = rest << 8 | byte(i);
+    hash ^= mixed(rest);
+    hash ^= static_cast<uint32_t>(text.size());
+    hash = (hash ^ hash >> 16) * 0x85ebca6bu;
+    hash = (hash ^ hash >> 13) * 0xc2b2ae35u;
+    return hash ^ hash >> 16;
+}
+
+float cryptomatte_id(std::string_view name) {
+    uint32_t bits = murmur3(name);
+    const uint32_t exponent = bits >> 23 & 255u;
+    if (exponent == 0 || exponent == 255) bits ^= 1u << 23;
+    return std::bit_cast<float>(bits);
 }
 
 }  // namespace cistula

@@ -33,7 +33,8 @@ struct FrameCounts {
 
 /// One rendered frame (or its crop), with its counts. pixels is row-major over rect.
 struct Film : FrameCounts {
-    int full_width = 0, full_height = 0;
+    int full_width = 0;
+    int full_height = 0;
     PixelRect rect;
     int radiance_exponent = 0;          // radiances were divided by 2^radiance_exponent
     int samples = 1;                    // per pixel

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,5 +32,12 @@ std::vector<LayeredPicture::Channel> cryptomatte_channels(const Film& film, cons
 /// The header attributes that tell names by ids.
 std::vector<std::pair<std::string, std::string>> cryptomatte_attributes(const Film& film,
                                                                         const OutputChannels& channels);
+
+/// MurmurHash3_x86_32 with seed 0 (Appleby, public domain).
+uint32_t murmur3(std::string_view text);
+
+/// The id of a name as Cryptomatte 1.2.0 stores it: the hash's bits as a float; an exponent of all zeros or all ones,
+/// which stands for no normal number, gets its lowest bit flipped.
+float cryptomatte_id(std::string_view name);
 
 }  // namespace cistula

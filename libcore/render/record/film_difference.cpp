@@ -38,7 +38,7 @@ void for_each_value(const Total& a, const Total& b, const Visit& visit) {
     visit(a.most, b.most);
 }
 
-/// Of a frame: its rays, flags and totals.
+/// Rays, flags and totals of a frame.
 template <class Visit>
 void for_each_value(const FrameCounts& a, const FrameCounts& b, const Visit& visit) {
     for_each_value(a.totals.units, b.totals.units, visit);

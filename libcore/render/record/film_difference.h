@@ -10,7 +10,8 @@
 namespace cistula {
 
 struct FilmDifference {
-    uint64_t compared = 0, differing = 0;
+    uint64_t compared = 0;
+    uint64_t differing = 0;
     std::optional<size_t> first;  // the first pixel that differs, if the films have the same size
 };
 

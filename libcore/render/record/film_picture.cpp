@@ -103,7 +103,8 @@ std::vector<LayeredPicture::Channel> pixel_channels(const Film& film, const Outp
 
 LayeredPicture channels_of(const Film& film, const OutputChannels& channels, std::atomic<uint64_t>* clamped) {
     check(film);
-    const KeptParts wanted = parts_for(channels), kept = film.pixels.parts();
+    const KeptParts wanted = parts_for(channels);
+    const KeptParts kept = film.pixels.parts();
     if (wanted.losses > kept.losses || wanted.sights > kept.sights)
         throw std::invalid_argument("a film keeps the parts of its pixels that its channels are made of");
     LayeredPicture picture;
@@ -143,7 +144,8 @@ LayeredPicture to_layers(const Film& film, const OutputChannels& channels, uint6
     constexpr size_t block = 1024;
     tbb::parallel_for(size_t{0}, (film.pixels.size() + block - 1) / block, [&](size_t number) {
         const DefaultRounding rounding;
-        const size_t first = number * block, last = std::min(first + block, film.pixels.size());
+        const size_t first = number * block;
+        const size_t last = std::min(first + block, film.pixels.size());
         for (LayeredPicture::Channel& channel : picture.channels)
             channel.write(first, last, channel.values.data() + first);
     });

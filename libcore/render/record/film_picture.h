@@ -1,14 +1,17 @@
-// Conversion of a film's integer sums to the channels of a file.
+// Conversion of a film's integer sums to the channels of a file; lists of layers by name, as --layers takes them:
+// path,Z,N.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/color/color_space.h"
 #include "image/picture/picture.h"
 #include "render/record/film.h"
+#include "render/record/film_layers.h"
 
 namespace cistula {
 
@@ -16,12 +19,24 @@ namespace cistula {
 struct OutputChannels {
     bool half =
         false;  // R G B A, coverage, error.* and N.* in half precision; id, samples, cost and Z are always float
-    bool error = false, id = false, samples = false, cost = false, z = false, normal = false, coverage = false;
-    bool position = false, uv = false, albedo = false, depth_ray = false, material_id = false;
+    bool error = false;
+    bool id = false;
+    bool samples = false;
+    bool cost = false;
+    bool z = false;
+    bool normal = false;
+    bool coverage = false;
+    bool position = false;
+    bool uv = false;
+    bool albedo = false;
+    bool depth_ray = false;
+    bool material_id = false;
     bool path[path_layer_count] = {};            // by PathLayer
     bool light = false;                          // light layers: all, or these alone
     std::vector<std::string> light_layers = {};  // by their names without "Combined_"
-    bool object_mattes = false, material_mattes = false, light_mattes = false;
+    bool object_mattes = false;
+    bool material_mattes = false;
+    bool light_mattes = false;
     bool transparent = false;           // samples that meet nothing add nothing to R, G, B and A
     float z_far = 1e10f;                // Z where there is nothing
     const ColorSpace* space = nullptr;  // of R, G, B and error.*; null: that of scenes, lin_rec709_scene
@@ -93,5 +108,12 @@ ColorPicture to_color(const Film& film, bool transparent = false);
 /// 128-bit FNV-1a of the image as 32 hexadecimal digits: over the radiance, hits and samples of every pixel, lowest
 /// byte first, in pixel order. Nothing else enters, so films with equal hashes hold the same picture.
 std::string film_hash(const Film& film);
+
+/// The channels with the layers of a list of layers and groups of layers (docs/programs/layers.md), and no others.
+/// Throws Error (usage) with the nearest name for an unknown one, but for light layers, which depend on the scene.
+OutputChannels parse_layers(std::string_view text, OutputChannels channels = {});
+
+/// Throws Error (usage) for a light layer that the scene does not have, with those that it has.
+void require_light_layers(const OutputChannels& channels, const LayerNames& names);
 
 }  // namespace cistula

@@ -16,7 +16,8 @@ namespace cistula {
 
 /// The parts of records that a film keeps beside the radiance; by default all.
 struct KeptParts {
-    bool losses = true, sights = true;
+    bool losses = true;
+    bool sights = true;
 
     /// Bytes of a pixel.
     size_t bytes() const {

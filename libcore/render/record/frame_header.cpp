@@ -44,9 +44,11 @@ std::vector<float> world_to_camera(const Camera& camera) {
 }
 
 std::vector<float> world_to_ndc(const Camera& camera, int width, int height) {
-    const double half_across = 2 * camera.tan_half_width, half_down = half_across * height / width;
+    const double half_across = 2 * camera.tan_half_width;
+    const double half_down = half_across * height / width;
     const Vec3<double>& f = camera.forward;
-    const Vec3<double> x = camera.right / half_across + 0.5 * f, y = 0.5 * f - camera.up / half_down;
+    const Vec3<double> x = camera.right / half_across + 0.5 * f;
+    const Vec3<double> y = 0.5 * f - camera.up / half_down;
     const double depth = -dot(camera.position, f);
     const Row rows[4] = {
         {x.x, y.x, f.x, f.x},

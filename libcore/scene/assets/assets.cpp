@@ -21,31 +21,35 @@ auto at_place(const SceneDescription& scene, const std::string& place, const Rea
     try {
         return read();
     } catch (const Error& error) {
-        if (error.code() == ExitCode::interrupted) throw;
-        throw scene_error(scene, place, error.what(), error.code());
+        if (error.kind() == ErrorKind::interrupted) throw;
+        throw error.at(place_in(scene, place));
     }
 }
 
 /// Throws unless a list of triangles, three corners each, is one.
 void check_triangles(size_t vertices, std::span<const uint32_t> corners, std::span<const glm::dvec2> uvs) {
-    const auto refuse = [](const std::string& text) { throw Error(ExitCode::usage, text); };
-    if (corners.empty()) refuse("there are no triangles; give at least one");
+    const auto refuse = [](const std::string& problem, const char* remedy = "") {
+        throw Error(ErrorKind::scene, problem, remedy);
+    };
+    if (corners.empty()) refuse("there are no triangles", "give at least one");
     for (const uint32_t corner : corners)
         if (corner >= vertices)
             refuse("a triangle names vertex " + std::to_string(corner) + ", but there are only " +
                    std::to_string(vertices) + " (numbered from 0)");
     if (!uvs.empty() && uvs.size() != vertices)
-        refuse("there are " + std::to_string(uvs.size()) + " uvs for " + std::to_string(vertices) +
-               " vertices; give one a vertex, or none");
+        refuse("there are " + std::to_string(uvs.size()) + " uvs for " + std::to_string(vertices) + " vertices",
+               "give one a vertex, or none");
     for (const glm::dvec2& uv : uvs)
         if (!is_finite(uv.x) || !is_finite(uv.y)) refuse("a uv is not finite");
 }
 
 void check_mesh(const MeshData& mesh) {
-    const auto refuse = [](const std::string& text) { throw Error(ExitCode::usage, "the mesh " + text); };
-    if (mesh.groups.empty()) refuse("has no groups; give at least one");
+    const auto refuse = [](const std::string& problem, const char* remedy = "") {
+        throw Error(ErrorKind::scene, "the mesh " + problem, remedy);
+    };
+    if (mesh.groups.empty()) refuse("has no groups", "give at least one");
     for (const PolygonMesh& group : mesh.groups) {
-        if (!group.corner_uvs.empty()) refuse("has uvs by corners; give one a vertex, or none");
+        if (!group.corner_uvs.empty()) refuse("has uvs by corners", "give one a vertex, or none");
         size_t end = 0;
         for (const size_t next : group.ends) {
             if (next < end || next > group.corners.size()) refuse("has polygons that end before they begin");
@@ -60,7 +64,7 @@ void check_mesh(const MeshData& mesh) {
 ColorPicture checker_picture(const TextureDescription& texture) {
     for (const dvec3& color : texture.checker)
         if (!is_finite(glm::vec3(color)) || color.x < 0 || color.y < 0 || color.z < 0)
-            throw Error(ExitCode::usage, "a color is negative or not finite");
+            throw Error(ErrorKind::scene, "a color is negative or not finite");
     const glm::vec3 a(texture.checker[0]), b(texture.checker[1]);
     return {2, 2, {a, b, b, a}};
 }
@@ -124,7 +128,7 @@ class AssetLoader {
 
     std::shared_ptr<const ColorPicture> picture_of(const TextureDescription& texture, const std::string& place) {
         if (!is_finite(texture.repeat.x) || !is_finite(texture.repeat.y))
-            throw Error(ExitCode::usage, "the repeat must be finite");
+            throw Error(ErrorKind::scene, "the repeat must be finite");
         if (texture.is_checker()) return std::make_shared<const ColorPicture>(checker_picture(texture));
         std::shared_ptr<const ColorPicture>& read =
             pictures_[{texture.file, texture.texels.get(), texture.colorspace, texture.strict}];
@@ -157,11 +161,13 @@ SceneAssets load_assets(const SceneDescription& scene, StopSignal stop) {
     return in_default_rounding([&] { return AssetLoader(scene, stop).load(); });
 }
 
-Error scene_error(const SceneDescription& description, const std::string& place, const std::string& text,
-                  ExitCode code) {
-    std::string message = description.source.empty() ? "scene" : description.source;
-    if (!place.empty()) message += ": " + place;
-    return {code, message + ": " + text};
+std::string place_in(const SceneDescription& description, const std::string& place) {
+    return (description.source.empty() ? "scene" : description.source) + (place.empty() ? "" : ": " + place);
+}
+
+Error scene_error(const SceneDescription& description, const std::string& place, const std::string& problem,
+                  const std::string& remedy) {
+    return Error(ErrorKind::scene, problem, remedy).at(place_in(description, place));
 }
 
 }  // namespace cistula

@@ -26,8 +26,11 @@ struct SceneAssets {
 /// than their limit is in memory. Throws Error with the place, and (interrupted).
 SceneAssets load_assets(const SceneDescription& scene, StopSignal stop = {});
 
-/// An error with its place: "scene.json: /objects/2: TEXT".
-Error scene_error(const SceneDescription& description, const std::string& place, const std::string& text,
-                  ExitCode code = ExitCode::usage);
+/// "scene.json: /objects/2".
+std::string place_in(const SceneDescription& description, const std::string& place);
+
+/// An error (scene) with its place.
+Error scene_error(const SceneDescription& description, const std::string& place, const std::string& problem,
+                  const std::string& remedy = {});
 
 }  // namespace cistula

@@ -18,14 +18,14 @@
 #include "cistula/geometry/ray.h"
 #include "cistula/lights/light_tree.h"
 #include "scene/compile/compiled_scene.h"
-#include "scene/compile/contacts/shared_planes.h"
 #include "scene/compile/lights/compile_lights.h"
 #include "scene/compile/lights/radiance_bound.h"
 #include "scene/compile/materials/compile_materials.h"
 #include "scene/compile/materials/required_effects.h"
-#include "scene/compile/meshes/clusters.h"
+#include "scene/compile/meshes/mesh_apex.h"
 #include "scene/compile/scene_hash.h"
 #include "scene/compile/solids/compile_solids.h"
+#include "scene/compile/solids/placed_bodies.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {
@@ -229,7 +229,9 @@ class Compiler {
 
     /// Hashes and compiles the meshes in order. Small ones are prepared side by side, some at a time.
     void compile_meshes() {
-        constexpr uint32_t most_at_once = 4096, most_triangles = 100'000;  // but for those of the last
+        // but for those of the last
+        constexpr uint32_t most_at_once = 4096;
+        constexpr uint32_t most_triangles = 100'000;
         const auto count = static_cast<uint32_t>(source_.solids.size());
         std::vector<PreparedMesh> prepared;
         for (uint32_t first = 0, end = 0; first < count; first = end) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/default_rounding.h"
-#include "scene/compile/arrays.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {
@@ -23,7 +22,8 @@ constexpr double corner_slack = 0x1p-30;
 /// The box of a convex solid whose planes are pushed out by 64 u M, u that of float.
 template <class Real>
 Box convex_box(const SceneView<Real>& scene, const Solid& solid) {
-    const double extent = static_cast<double>(scene.extent), push = 64 * 0x1p-24 * extent;
+    const double extent = static_cast<double>(scene.extent);
+    const double push = 64 * 0x1p-24 * extent;
     std::vector<Plane> planes;
     for (uint32_t i = 0; i < solid.slab_count; ++i) {
         const Slab<Real>& slab = scene.slabs[solid.first_slab + i];

@@ -1,6 +1,7 @@
 // Compiles a description into the flat arrays that the shading code reads.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "base/error.h"
 #include "cistula/model/scene_view.h"
+#include "cistula/numerics/portable.h"
 #include "cistula/numerics/vec.h"
 #include "scene/compile/scene_names.h"
 #include "scene/description/coordinate_rounding.h"
@@ -106,5 +108,17 @@ struct PaddedBox {
 };
 template <class Real>
 PaddedBox primitive_box(const SceneView<Real>& scene, uint32_t primitive);
+
+/// A vector's elements, which must outlive the span.
+template <class T>
+Span<T> span_of(const std::vector<T>& all) {
+    return {all.data(), static_cast<uint32_t>(all.size())};
+}
+
+/// The bytes of the elements.
+template <class T>
+size_t bytes_of(const std::vector<T>& all) {
+    return all.size() * sizeof(T);
+}
 
 }  // namespace cistula

@@ -6,7 +6,6 @@
 #include "cistula/shading/contact.h"
 #include "cistula/transport/pixel.h"
 #include "cistula/traversal/bvh.h"
-#include "scene/compile/arrays.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/constant_scene.h"
 #include "scene/compile/scene_copies.h"

@@ -38,7 +38,8 @@ void for_each_span(SceneView<Real>& view, const Visit& visit) {
 template <class Real>
 SceneArena<Real>::SceneArena(const SceneView<Real>& view) : offsets_(view) {
     for_each_span(offsets_, [&]<class T>(Span<T>& span) {
-        const size_t offset = (bytes_.size() + alignment - 1) / alignment * alignment, size = span.size * sizeof(T);
+        const size_t offset = (bytes_.size() + alignment - 1) / alignment * alignment;
+        const size_t size = span.size * sizeof(T);
         bytes_.resize(offset + size);
         if (size != 0) std::memcpy(bytes_.data() + offset, span.data, size);
         span.data = reinterpret_cast<const T*>(offset);

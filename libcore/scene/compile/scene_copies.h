@@ -17,7 +17,8 @@ SheetPlane<Real> boxed_plane(const SceneView<Real>& scene, uint32_t index) {
     SheetPlane<Real> plane = plane_of(scene, index);
     const Cluster<Real>& cluster = scene.clusters[index];
     for (int axis = 0; axis < 3; ++axis) {
-        Real low = cluster.corner[0][axis][0], high = low;
+        Real low = cluster.corner[0][axis][0];
+        Real high = low;
         for (uint32_t lane = 0; lane < cluster.count; ++lane)
             for (int c = 0; c < 3; ++c) {
                 low = min_or_second(low, cluster.corner[c][axis][lane]);

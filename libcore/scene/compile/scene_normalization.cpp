@@ -92,8 +92,8 @@ SceneNormalization find_normalization(const SceneSource& source) {
     const double extent = largest * normalization.factor;
     if (description.frame && extent > largest_extent)
         throw scene_error(description, "/frame",
-                          "the largest coordinate is " + std::to_string(extent) +
-                              " in the pinned frame; it must stay under 2: choose a lesser scale or another center");
+                          "the largest coordinate is " + std::to_string(extent) + " in the pinned frame",
+                          "it must stay under 2: choose a lesser scale or another center");
     // If the scene does not give the frame, M may be just under 1 (see largest_extent); what is derived from it is then
     // slightly larger than necessary.
     normalization.extent = description.frame ? (extent > 0 ? extent : 1) : max_or_second(extent, 1.0);

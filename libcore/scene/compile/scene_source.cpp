@@ -86,7 +86,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
     for (const std::string& warning : data.warnings)
         source.warnings.push_back(scene_error(scene, object.place, warning).what());
     std::vector<MeshGroup> groups = join_groups(placed_parts(data, mesh), object.material >= 0, source.stop);
-    if (groups.empty()) throw scene_error(scene, object.place, "there are no triangles; give at least one");
+    if (groups.empty()) throw scene_error(scene, object.place, "there are no triangles", "give at least one");
     for (auto& [part, pieces] : groups) {
         SourceSolid solid;
         solid.name = groups.size() == 1 ? object.name : given_name(object.name, object.place) + "/" + part.name;
@@ -102,8 +102,8 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
             make_name_own(source.materials.back(), object, mesh.file, names);
         } else {
             throw scene_error(scene, object.place,
-                              "the mesh brings no material of its own" + (mesh.data ? "" : " (" + mesh.file + ")") +
-                                  "; name one with \"material\"");
+                              "the mesh brings no material of its own" + (mesh.data ? "" : " (" + mesh.file + ")"),
+                              "name one with \"material\"");
         }
         add_mesh_solids(source, std::move(solid), std::move(pieces));
     }
@@ -119,7 +119,8 @@ void require_different_names(const SceneSource& source) {
             throw scene_error(*source.description, solid.place,
                               quoted(other->first) + " is the name of " + other->second->place +
                                   " too: an object without a name is called object and its number, a part of a mesh by "
-                                  "the object's name, / and its own; give each another");
+                                  "the object's name, / and its own",
+                              "give each another");
     }
 }
 
@@ -162,7 +163,7 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
             continue;
         }
         if (object.material < 0)
-            throw scene_error(description, object.place, "has no material; only a mesh file can bring its own");
+            throw scene_error(description, object.place, "has no material", "only a mesh file can bring its own");
         SourceSolid solid;
         solid.name = object.name;
         solid.place = object.place;
@@ -172,9 +173,10 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
             solid.platonic = platonic;
             lights += platonic_shape(platonic->solid).edges.size() * static_cast<size_t>(platonic->edge_lights.count);
             if (lights > most_lights)
-                throw scene_error(description, object.place,
-                                  "with the lights on its edges the scene has more than " +
-                                      std::to_string(most_lights) + " lights; lower its count");
+                throw scene_error(
+                    description, object.place,
+                    "with the lights on its edges the scene has more than " + std::to_string(most_lights) + " lights",
+                    "lower its count");
         } else {
             const auto& triangles = std::get<TrianglesObject>(object.shape);
             solid.mesh.vertices = triangles.vertices;
@@ -196,11 +198,11 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
         const std::string what = "the material " + material.name + " has a texture, but ";
         if (solid.platonic)
             throw scene_error(description, solid.place,
-                              what + "a " + platonic_name(solid.platonic->solid) +
-                                  " has no texture coordinates; give it a material without a texture");
+                              what + "a " + platonic_name(solid.platonic->solid) + " has no texture coordinates",
+                              "give it a material without a texture");
         if (solid.mesh.uvs.empty())
-            throw scene_error(description, solid.place,
-                              what + "the triangles have no texture coordinates; give one uv a vertex");
+            throw scene_error(description, solid.place, what + "the triangles have no texture coordinates",
+                              "give one uv a vertex");
     }
     source.bodies = std::make_shared<const PlacedBodies>(source);
     return source;

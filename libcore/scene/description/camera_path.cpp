@@ -1,5 +1,7 @@
 #include "scene/description/camera_path.h"
 
+#include <fmt/format.h>
+
 #include <optional>
 
 #include "base/error.h"
@@ -111,13 +113,16 @@ CameraFrame camera_at(const CameraDescription& description, int frame) {
     result.time = frame * description.time_step;
     const View view = view_at(description, result.time);
 
-    const std::string place = one_line(description.place) + ": at frame " + std::to_string(frame) + " ";
+    const auto refuse = [&](const char* problem, const char* remedy = "") {
+        throw Error(ErrorKind::scene, "at frame " + std::to_string(frame) + " " + problem, remedy)
+            .at(description.place);
+    };
     if (!is_finite(view.direction) || !(view.distance > 0))
-        throw Error(ExitCode::usage, place + "the camera's position and target coincide; they must be apart");
+        refuse("the camera's position and target coincide", "they must be apart");
     if (!is_finite(description.up) || !(length(description.up) > 0))
-        throw Error(ExitCode::usage, place + "up is the zero vector; it must point somewhere, such as [0, 0, 1]");
+        refuse("up is the zero vector", "it must point somewhere, such as [0, 0, 1]");
     if (!(description.field_of_view > 0 && description.field_of_view < 180))
-        throw Error(ExitCode::usage, place + "the field of view must be above 0 and below 180 degrees");
+        refuse("the field of view must be above 0 and below 180 degrees");
 
     const dvec3 up = normalized(description.up);
     Camera& camera = result.camera;
@@ -128,6 +133,47 @@ CameraFrame camera_at(const CameraDescription& description, int frame) {
     camera.up = normalized(cross(camera.right, camera.forward));
     camera.tan_half_width = elementary::tan(description.field_of_view * (3.14159265358979323846 / 360));
     return result;
+}
+
+namespace {
+
+constexpr size_t most_named = 3;
+
+/// Cosine of the angle between a picture's right and that of the next one, after the least rotation that takes the view
+/// of the first to that of the next. 1 where the views are opposite, since no rotation is the least then.
+double turn_cosine(const Camera& from, const Camera& to) {
+    const double cosine = dot(from.forward, to.forward);
+    if (!(1 + cosine > 0x1p-40)) return 1;
+    const glm::dvec3 axis = cross(from.forward, to.forward);
+    const glm::dvec3 moved = cross(axis, from.right);
+    return dot(from.right + moved + cross(axis, moved) / (1 + cosine), to.right);
+}
+
+/// The angle with a cosine below 0, in whole degrees.
+int degrees_of(double cosine) {
+    int degrees = 90;
+    while (degrees < 180 && elementary::cos((degrees + 0.5) * (3.14159265358979323846 / 180)) > cosine) ++degrees;
+    return degrees;
+}
+
+}  // namespace
+
+std::string camera_turns(const CameraDescription& description, const std::vector<int>& frames) {
+    if (!description.position_path && !description.target_path) return "";
+    std::string places;
+    size_t count = 0;
+    CameraFrame before;
+    for (size_t i = 0; i < frames.size(); ++i) {
+        const CameraFrame at = camera_at(description, frames[i]);
+        const double cosine = i > 0 && at.frame == before.frame + 1 ? turn_cosine(before.camera, at.camera) : 1;
+        before = at;
+        if (cosine >= 0 || ++count > most_named) continue;
+        places += fmt::format("{}by {} degrees between frames {} and {}", count == 1 ? "" : ", ", degrees_of(cosine),
+                              at.frame - 1, at.frame);
+    }
+    if (count == 0) return "";
+    if (count > most_named) places += fmt::format(", and in {} places more", count - most_named);
+    return fmt::format("{}: the view passes along up and the picture turns at once: {}", description.place, places);
 }
 
 }  // namespace cistula

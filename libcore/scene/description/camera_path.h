@@ -1,5 +1,8 @@
-// Where the camera is at each frame of a film.
+// Where the camera is at each frame of a sequence, and where its picture turns at once.
 #pragma once
+
+#include <string>
+#include <vector>
 
 #include "cistula/model/camera.h"
 #include "scene/description/description.h"
@@ -18,5 +21,10 @@ struct CameraFrame {
 /// little, or the target's if only that has a path; the world axis that is least along the view, x before y before z. A
 /// function of `frame` alone. Throws Error (usage), with the camera's place, where position and target coincide.
 CameraFrame camera_at(const CameraDescription& description, int frame);
+
+/// A warning that names the consecutive frames between which the picture turns by more than a quarter about its middle,
+/// beyond what it takes to move the view straight from one direction to the other: the view passes along `up` there.
+/// Empty if there are none. Frames in `frames` that do not follow one another are not compared.
+std::string camera_turns(const CameraDescription& description, const std::vector<int>& frames);
 
 }  // namespace cistula

@@ -12,7 +12,8 @@ namespace cistula {
 namespace {
 
 constexpr int as_floats = 24;
-constexpr int fewest_digits = 6, most_digits = 12;
+constexpr int fewest_digits = 6;
+constexpr int most_digits = 12;
 constexpr size_t most_looked_at = 4096;  // points
 
 /// A number's shortest decimal form.
@@ -80,8 +81,11 @@ class StyleSearch {
 
   private:
     bool floats_ = true;
-    int most_ = 0, decimals_ = 0;
-    size_t full_ = 0, count_ = 0, early_ = 0;
+    int most_ = 0;
+    int decimals_ = 0;
+    size_t full_ = 0;
+    size_t count_ = 0;
+    size_t early_ = 0;
     double largest_ = 0;
     int last_bit_ = 2000;  // the least
 };

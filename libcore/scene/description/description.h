@@ -130,7 +130,8 @@ struct CameraDescription {
 };
 
 struct FilmDescription {
-    int width = 640, height = 480;
+    int width = 640;
+    int height = 480;
     int frames = 1;
     int supersample = 1;
     int rate = 0, rate_divisor = 1;  // frames per second are their quotient; 0: none given

@@ -92,7 +92,8 @@ PlatonicShape::Face face_across(const PlatonicShape& shape, uint32_t id, const d
 void add_edges(PlatonicShape& shape) {
     for (const auto& face : shape.faces) {
         for (size_t i = 0; i < face.vertices.size(); ++i) {
-            const uint32_t a = face.vertices[i], b = face.vertices[(i + 1) % face.vertices.size()];
+            const uint32_t a = face.vertices[i];
+            const uint32_t b = face.vertices[(i + 1) % face.vertices.size()];
             if (a < b) shape.edges.push_back({{a, b}, {face.id, face.id}});
         }
     }
@@ -100,7 +101,8 @@ void add_edges(PlatonicShape& shape) {
               [](const auto& a, const auto& b) { return a.vertices < b.vertices; });
     for (const auto& face : shape.faces) {
         for (size_t i = 0; i < face.vertices.size(); ++i) {
-            const uint32_t b = face.vertices[i], a = face.vertices[(i + 1) % face.vertices.size()];
+            const uint32_t b = face.vertices[i];
+            const uint32_t a = face.vertices[(i + 1) % face.vertices.size()];
             if (a > b) continue;
             const std::array<uint32_t, 2> ends{a, b};
             const auto edge = std::find_if(shape.edges.begin(), shape.edges.end(),

@@ -16,7 +16,8 @@ inline SineCosine sine_cosine_of_degrees(double degrees) {
     const double turned = degrees - 360 * floor_of(degrees / 360);
     const double quarter = floor_of(turned / 90 + 0.5);
     const double radians = (turned - 90 * quarter) * (3.14159265358979323846 / 180);
-    const double s = elementary::sin(radians), c = elementary::cos(radians);
+    const double s = elementary::sin(radians);
+    const double c = elementary::cos(radians);
     switch (static_cast<int>(quarter) & 3) {
         case 0:
             return {s, c};

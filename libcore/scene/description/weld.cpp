@@ -18,7 +18,8 @@ std::vector<uint32_t> weld(std::span<const glm::dvec3> v) {
         if (is_finite(v[i])) order.push_back({v[i].x, i});
     tbb::parallel_sort(order.begin(), order.end(), [&v](const Key& p, const Key& q) {
         if (p.x != q.x) return p.x < q.x;
-        const uint32_t a = p.number, b = q.number;
+        const uint32_t a = p.number;
+        const uint32_t b = q.number;
         if (v[a].y != v[b].y) return v[a].y < v[b].y;
         if (v[a].z != v[b].z) return v[a].z < v[b].z;
         return a < b;

@@ -80,8 +80,12 @@ void JsonValue::check_comment() const {
         member(std::string(comment_key)).fail_expected("a string or an array of strings");
 }
 
-void JsonValue::fail_at(const std::string& place, const std::string& message) const {
-    throw Error(ExitCode::usage, fmt::format("{}: {}: {}", *source_, place.empty() ? "/" : place.c_str(), message));
+void JsonValue::fail_at(const std::string& place, const std::string& problem, const std::string& remedy) const {
+    JsonValue(*json_, *source_, place).fail(Error(ErrorKind::scene, problem, remedy));
+}
+
+void JsonValue::fail(const Error& error) const {
+    throw error.at(fmt::format("{}: {}", *source_, place_.empty() ? "/" : place_));
 }
 
 void JsonValue::fail_expected(const std::string& expected) const {
@@ -120,8 +124,8 @@ int JsonValue::choice(const Key& key) const {
     const std::string& name = json_->get_ref<const std::string&>();
     for (size_t i = 0; i < key.choices.size(); ++i)
         if (key.choices[i] == name) return static_cast<int>(i);
-    fail(fmt::format("unknown value {}; {}", found_text(*json_),
-                     suggestion(name, {key.choices.begin(), key.choices.end()}, "values")));
+    fail(fmt::format("unknown value {}", found_text(*json_)),
+         suggestion(name, {key.choices.begin(), key.choices.end()}, "values"));
 }
 
 glm::dvec3 JsonValue::color(const Key& key) const {
@@ -144,8 +148,8 @@ JsonObject::JsonObject(JsonValue value, const KeyTable& table) : value_(std::mov
     value_.check_comment();
     for (const auto& member : value_.json().items())
         if (member.key() != comment_key && !table.find(member.key()))
-            value_.fail_at(value_.place_of(member.key()),
-                           "unknown key; " + suggestion(member.key(), table.names(), "keys"));
+            value_.fail_at(value_.place_of(member.key()), "unknown key",
+                           suggestion(member.key(), table.names(), "keys"));
     for (const Key& key : table.keys)
         if (key.required && !value_.json().contains(key.name))
             value_.fail(fmt::format("missing key '{}'{}", key.name,
@@ -201,8 +205,8 @@ int JsonObject::read_choice(std::string_view key) {
     return has(key) ? at(key).choice(key_of(key)) : -1;
 }
 
-void JsonObject::fail(std::string_view key, const std::string& message) const {
-    value_.fail_at(value_.place_of(key), message);
+void JsonObject::fail(std::string_view key, const std::string& problem, const std::string& remedy) const {
+    value_.fail_at(value_.place_of(key), problem, remedy);
 }
 
 void JsonObject::finish() const {

@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "scene/readers/scene_keys.h"
 
 namespace cistula {
@@ -41,11 +42,16 @@ class JsonValue {
     /// Throws unless this object's comment, if it has one, is a string or an array of strings.
     void check_comment() const;
 
-    /// Throws Error (usage): "source: place: message", on one line.
-    [[noreturn]] void fail(const std::string& message) const { fail_at(place_, message); }
-    [[noreturn]] void fail_at(const std::string& place, const std::string& message) const;
+    /// Throws Error (scene) at "source: place".
+    [[noreturn]] void fail(const std::string& problem, const std::string& remedy = {}) const {
+        fail_at(place_, problem, remedy);
+    }
+    [[noreturn]] void fail_at(const std::string& place, const std::string& problem,
+                              const std::string& remedy = {}) const;
+    /// Throws the error at "source: place".
+    [[noreturn]] void fail(const Error& error) const;
 
-    /// Throws Error (usage): "expected ..., found ...".
+    /// Throws Error (scene): "expected ..., found ...".
     [[noreturn]] void fail_expected(const std::string& expected) const;
 
     /// Length of an array, which must be `least` or more; `expected` is for the message.
@@ -90,7 +96,7 @@ class JsonObject {
     /// The choice as an index into the key's choices, or -1 if the key is absent.
     int read_choice(std::string_view key);
 
-    [[noreturn]] void fail(std::string_view key, const std::string& message) const;
+    [[noreturn]] void fail(std::string_view key, const std::string& problem, const std::string& remedy = {}) const;
 
     /// Call it last: throws std::logic_error if the reader skipped one of the table's keys.
     void finish() const;

@@ -68,7 +68,7 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
         if (members.size() == members.capacity()) enlarge(members);
         const bool is_new = is_new_key(members, name);
         members.emplace_back(std::move(name), Json());
-        if (!is_new) fail("duplicate key; give it once");
+        if (!is_new) fail("duplicate key", "give it once");
         return count();
     }
     bool end_object() override {
@@ -95,19 +95,19 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
     [[noreturn]] void fail_at(size_t at, const std::string& what) const {
         const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<ptrdiff_t>(at), '\n');
         const size_t line_start = at == 0 ? 0 : text_.rfind('\n', at - 1) + 1;  // npos + 1 is 0
-        throw Error(ExitCode::usage, fmt::format("{}:{}:{}: {}", source_, line, at - line_start + 1, what));
+        throw Error(ErrorKind::scene, what).at(fmt::format("{}:{}:{}", source_, line, at - line_start + 1));
     }
 
   private:
-    [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ExitCode::usage, fmt::format("{}: {}: {}", source_, place(), what));
+    [[noreturn]] void fail(const std::string& problem, const std::string& remedy) const {
+        throw Error(ErrorKind::scene, problem, remedy).at(fmt::format("{}: {}", source_, place()));
     }
     bool count() {
         if (++entries_ > most_entries)
-            fail(
-                fmt::format("more than {} million keys, strings, arrays and objects up to here, which no scene may "
-                            "have; put large meshes into files of their own, PLY or OBJ",
-                            most_entries / 1'000'000));
+            fail(fmt::format(
+                     "more than {} million keys, strings, arrays and objects up to here, which no scene may have",
+                     most_entries / 1'000'000),
+                 "put large meshes into files of their own, PLY or OBJ");
         return true;
     }
     /// Makes room for more members. The vector itself would copy them all, with everything in them: their names are
@@ -146,7 +146,8 @@ class TreeBuilder final : public nlohmann::json_sax<Json> {
     void open(Json container) {
         Json* level = &slot(std::move(container));
         if (open_.size() == most_levels)
-            fail(fmt::format("more than {} levels deep; a scene has {} at most", most_levels, levels_of_a_scene));
+            fail(fmt::format("more than {} levels deep", most_levels),
+                 fmt::format("a scene has {} at most", levels_of_a_scene));
         open_.push_back(level);
     }
 
@@ -177,7 +178,8 @@ Json parse_json(const std::string& text, const std::string& source) {
     // The library takes it for the end of the text, or of a comment.
     if (const size_t found = text.find('\0'); found != text.npos)
         builder.fail_at(found, "a NUL byte, which JSON does not have");
-    constexpr bool strict = true, ignore_comments = true;
+    constexpr bool strict = true;
+    constexpr bool ignore_comments = true;
     Json::sax_parse(text, &builder, Json::input_format_t::json, strict, ignore_comments);
     return builder.take();
 }

@@ -1,4 +1,4 @@
-#include "scene/readers/read_json.h"
+#include "scene/readers/scene_formats.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -78,12 +78,12 @@ CameraDescription read_camera(const JsonValue& value) {
         path.finish();
     }
     if (camera.position_path && keys.has("position"))
-        keys.fail("position", "the path gives the position already; leave out one of the two");
+        keys.fail("position", "the path gives the position already", "leave out one of the two");
     if (camera.target_path && keys.has("target"))
-        keys.fail("target", "the path gives the target already; leave out one of the two");
+        keys.fail("target", "the path gives the target already", "leave out one of the two");
     if (camera.up == glm::dvec3{0}) keys.fail("up", "expected a direction other than [0, 0, 0]");
     if (!camera.position_path && !camera.target_path && camera.position == camera.target)
-        keys.fail("target", "the camera's position and target coincide; move one of them");
+        keys.fail("target", "the camera's position and target coincide", "move one of them");
     keys.finish();
     return camera;
 }
@@ -99,7 +99,7 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
         const std::vector<std::string_view> known = {"file", "filter", "checker", "repeat", "colorspace", "strict"};
         for (const auto& member : value.json().items())
             if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
-                value.fail_at(value.place_of(member.key()), "unknown key; " + suggestion(member.key(), known, "keys"));
+                value.fail_at(value.place_of(member.key()), "unknown key", suggestion(member.key(), known, "keys"));
         value.fail("expected one of the keys 'file' and 'checker'");
     }
     if (!has_checker) {
@@ -167,8 +167,9 @@ void require_different_names(const std::vector<ObjectDescription>& objects, cons
         const auto [other, is_new] = first.try_emplace(objects[i].name, i);
         if (is_new) continue;
         const JsonValue value = list.item(i);
-        value.fail_at(value.place_of("name"), fmt::format("{} is the name of /objects/{} too; give each its own",
-                                                          quoted(objects[i].name), other->second));
+        value.fail_at(value.place_of("name"),
+                      fmt::format("{} is the name of /objects/{} too", quoted(objects[i].name), other->second),
+                      "give each its own");
     }
 }
 
@@ -205,7 +206,7 @@ int index_of_name(const JsonValue& value, const NameIndices& indices, const std:
     if (found != indices.end()) return found->second;
     std::vector<std::string_view> known(indices.size());
     for (const auto& [other, index] : indices) known[static_cast<size_t>(index)] = other;
-    value.fail(fmt::format("unknown {} {}; {}", kind, found_text(value.json()), suggestion(name, known, kind + "s")));
+    value.fail(fmt::format("unknown {} {}", kind, found_text(value.json())), suggestion(name, known, kind + "s"));
 }
 
 SceneDescription read_json_scene(const std::string& text, const std::string& label, const std::string& base_dir) {

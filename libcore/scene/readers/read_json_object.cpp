@@ -5,8 +5,8 @@
 
 #include "base/suggest.h"
 #include "scene/readers/json_reader.h"
-#include "scene/readers/meshes/quad.h"
-#include "scene/readers/read_json.h"
+#include "scene/readers/meshes/polygon.h"
+#include "scene/readers/scene_formats.h"
 
 namespace cistula {
 namespace {
@@ -142,7 +142,7 @@ const Form forms[] = {
             if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
     for (const auto& member : value.json().items())
         if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
-            value.fail_at(value.place_of(member.key()), "unknown key; " + suggestion(member.key(), known, "keys"));
+            value.fail_at(value.place_of(member.key()), "unknown key", suggestion(member.key(), known, "keys"));
     value.fail("expected one of the keys 'solid', 'quad', 'triangles' and 'mesh'");
 }
 

@@ -12,9 +12,7 @@
 #include "base/decimal.h"
 #include "base/default_rounding.h"
 #include "base/error.h"
-#include "scene/readers/read_json.h"
-#include "scene/readers/read_text_input.h"
-#include "scene/readers/scene_kind.h"
+#include "scene/readers/scene_formats.h"
 #include "scene/readers/text_tokens.h"
 
 namespace cistula {
@@ -31,14 +29,14 @@ std::string_view without_mark(std::string_view text) {
 /// Throws if a text that begins so cannot be a scene. `text` may be the first part of one, of several words.
 void check_start(std::string_view text, const std::string& label) {
     text = without_mark(text);
-    const auto fail = [&label](const std::string& what) {
-        throw Error(ExitCode::usage, fmt::format("{}: {}", label, what));
+    const auto fail = [&label](const std::string& problem, const char* remedy = "") {
+        throw Error(ErrorKind::scene, problem, remedy).at(label);
     };
     if (const std::string reason = no_scene_because(text.substr(0, start_bytes)); !reason.empty()) fail(reason);
     text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
-    if (text.empty()) fail("the scene is empty; expected JSON or the text of --print-template");
+    if (text.empty()) fail("the scene is empty", "expected JSON or the text of `print_template`");
     if (text[0] == '/' || text[0] == '[')
-        fail(fmt::format("a JSON scene begins with '{{', found '{}'; comments may stand anywhere after it", text[0]));
+        fail(fmt::format("a JSON scene begins with '{{', found '{}'", text[0]), "comments may stand anywhere after it");
     if (text[0] != '{' && !decimal<double>(text.substr(0, text.find_first_of(blanks))))
         read_text_input(std::string(text), label, "");  // throws: it does not begin with a number
 }
@@ -53,24 +51,25 @@ std::string read_all(std::istream& stream, const std::string& name) {
         stream.read(text.data() + old_size, static_cast<std::streamsize>(step));
         const auto got = static_cast<size_t>(stream.gcount());
         text.resize(old_size + got);
-        if (stream.bad()) throw Error(ExitCode::file, fmt::format("{}: cannot be read to its end", name));
+        if (stream.bad()) throw Error(ErrorKind::file, "cannot be read to its end").at(name);
         if (got < step) return text;
         if (old_size == 0 && without_mark(text).find_first_not_of(blanks) != text.npos) check_start(text, name);
     }
-    throw Error(ExitCode::usage, fmt::format("{}: is larger than {} MiB, which no scene may be; put large meshes into "
-                                             "files of their own, PLY or OBJ, and name these in \"objects\"",
-                                             name, largest_scene_bytes >> 20));
+    throw Error(ErrorKind::scene,
+                fmt::format("is larger than {} MiB, which no scene may be", largest_scene_bytes >> 20),
+                "put large meshes into files of their own, PLY or OBJ, and name these in \"objects\"")
+        .at(name);
 }
 
 std::string read_scene_file(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
-        throw Error(ExitCode::file, fmt::format("{}: is a folder; expected a scene file", path));
+        throw Error(ErrorKind::file, "is a folder", "expected a scene file").at(path);
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     if (!stream) {
         const char* reason = errno != 0 ? std::strerror(errno) : "the file does not open";
-        throw Error(ExitCode::file, fmt::format("{}: cannot read the scene: {}", path, reason));
+        throw Error(ErrorKind::file, std::string("cannot read the scene: ") + reason).at(path);
     }
     return read_all(stream, path);
 }

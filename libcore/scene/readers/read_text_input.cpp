@@ -1,4 +1,4 @@
-#include "scene/readers/read_text_input.h"
+#include "scene/readers/scene_formats.h"
 
 #include <algorithm>
 
@@ -6,8 +6,7 @@
 
 #include "base/decimal.h"
 #include "base/shown_text.h"
-#include "scene/readers/meshes/quad.h"
-#include "scene/readers/read_json.h"
+#include "scene/readers/meshes/polygon.h"
 #include "scene/readers/scene_keys.h"
 #include "scene/readers/text_tokens.h"
 

@@ -249,7 +249,8 @@ std::string number_text(double value) {
 }
 
 std::string range_text(const Range& range) {
-    const std::string low = number_text(range.low), high = number_text(range.high);
+    const std::string low = number_text(range.low);
+    const std::string high = number_text(range.high);
     if (!range.above && !range.below) return low + " to " + high;
     return (range.above ? "above " : "from ") + low + (range.below ? ", under " : ", to ") + high;
 }

@@ -1,4 +1,4 @@
-#include "scene/readers/scene_kind.h"
+#include "scene/readers/scene_formats.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -107,7 +107,8 @@ bool is_utf16(std::string_view bytes, bool big_endian) {
     const size_t count = std::min<size_t>(bytes.size() / 2, 64);
     size_t ascii = 0;
     for (size_t i = 0; i < count; ++i) {
-        const char high = bytes[2 * i + (big_endian ? 0 : 1)], low = bytes[2 * i + (big_endian ? 1 : 0)];
+        const char high = bytes[2 * i + (big_endian ? 0 : 1)];
+        const char low = bytes[2 * i + (big_endian ? 1 : 0)];
         if (high == 0 && low == 0) return false;
         ascii += high == 0 && (low >= ' ' || blanks.find(low) != std::string_view::npos);
     }

@@ -80,7 +80,7 @@ void TextTokens::finish() const {
 }
 
 void TextTokens::fail(int line, const std::string& message) const {
-    throw Error(ExitCode::usage, fmt::format("{}:{}: {}", label_, line, message));
+    throw Error(ErrorKind::scene, message).at(fmt::format("{}:{}", label_, line));
 }
 
 }  // namespace cistula

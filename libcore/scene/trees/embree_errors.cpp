@@ -17,7 +17,7 @@ DevicePointer make_embree_device(const std::string& config) {
     if (!device) {
         const std::string doing = "making a device for \"" + config + "\"";
         check_embree(nullptr, doing);
-        throw Error(ExitCode::device, "Embree: " + doing + " failed");
+        throw Error(ErrorKind::device, "Embree: " + doing + " failed");
     }
     rtcSetDeviceErrorFunction(
         device.get(), [](void*, RTCError, const char* reason) { last_reason = reason ? reason : ""; }, nullptr);
@@ -31,7 +31,7 @@ void check_embree(RTCDevice device, const std::string& doing) {
     const std::string message =
         "Embree: " + doing + " failed with error " + std::to_string(int(error)) + ": " + last_reason;
     if (error == RTC_ERROR_UNKNOWN) throw std::runtime_error(message);
-    throw Error(ExitCode::device, message);
+    throw Error(ErrorKind::device, message);
 }
 
 }  // namespace cistula

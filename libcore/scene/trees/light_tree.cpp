@@ -15,7 +15,9 @@ struct Part {
 
     bool is_light() const { return child < 0 && count == 1; }
     float half_area() const {
-        const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+        const float x = high[0] - low[0];
+        const float y = high[1] - low[1];
+        const float z = high[2] - low[2];
         return x * y + y * z + z * x;
     }
 };
@@ -37,7 +39,8 @@ class Widening {
             const TreeNode& node = binary_.nodes[static_cast<size_t>(part.child)];
             return {side_of(node, 0), side_of(node, 1)};
         }
-        Part first = part, rest = part;
+        Part first = part;
+        Part rest = part;
         first.count = 1;
         --rest.child;  // the next item
         --rest.count;

@@ -23,7 +23,7 @@ void* run_builder(RTCBuildArguments& arguments, RTCDevice device, StopSignal sto
     if (stop.is_given()) rtcGetDeviceError(device);  // that it was stopped
     stop.check();
     check_embree(device, "building a tree");
-    if (!root) throw Error(ExitCode::device, "Embree: building a tree failed");
+    if (!root) throw Error(ErrorKind::device, "Embree: building a tree failed");
     return root;
 }
 
@@ -93,7 +93,8 @@ void* tree_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* prim
 }
 
 void set_box(TreeNode& node, int side, const RTCBounds& b) {
-    const float low[3] = {b.lower_x, b.lower_y, b.lower_z}, high[3] = {b.upper_x, b.upper_y, b.upper_z};
+    const float low[3] = {b.lower_x, b.lower_y, b.lower_z};
+    const float high[3] = {b.upper_x, b.upper_y, b.upper_z};
     std::copy(low, low + 3, node.low[side]);
     std::copy(high, high + 3, node.high[side]);
 }
@@ -191,7 +192,8 @@ Groups group_neighbors(std::vector<RTCBuildPrimitive>& primitives, StopSignal st
     groups.order.reserve(primitives.size());
     groups.first.reserve(leaves.leaves.size() + 1);
     for (const uint64_t leaf : leaves.leaves) {
-        const auto begin = static_cast<size_t>(leaf >> 32), count = static_cast<size_t>(leaf & 0xffffffffu);
+        const auto begin = static_cast<size_t>(leaf >> 32);
+        const auto count = static_cast<size_t>(leaf & 0xffffffffu);
         const size_t first = groups.order.size();
         groups.first.push_back(static_cast<uint32_t>(first));
         for (size_t i = 0; i < count; ++i) groups.order.push_back(primitives[begin + i].primID);

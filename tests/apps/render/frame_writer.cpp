@@ -84,7 +84,7 @@ TEST_F(Writers, FilesAreWholeAndStatsInOrderWhateverIsDoneFirst) {
 
 TEST_F(Writers, WhatTheReceiverOfFramesThrowsIsAFailedWrite) {
     const FrameSink full = [this](const FrameStats& frame) {
-        if (frame.frame == 2) throw Error(ExitCode::file, "the disk is full");
+        if (frame.frame == 2) throw Error(ErrorKind::file, "the disk is full");
         written_.push_back(frame);
     };
     FrameWriter writer({}, false, {2}, stop_, full);
@@ -128,8 +128,8 @@ TEST_F(Writers, TheFirstFailureEndsAllAndIsTheOneReported) {
         try {
             work();
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file);
-            return error.what();
+            EXPECT_EQ(error.kind(), ErrorKind::file);
+            return with_options(error.what());
         }
         return "nothing";
     };

@@ -7,8 +7,8 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "image/exr/exr.h"
-#include "render/frame_settings.h"
 #include "render/record/film_picture.h"
+#include "render/renderer.h"
 #include "scene/description/camera_path.h"
 #include "scene/readers/read_scene.h"
 #include "testing/support/render_program.h"

@@ -9,8 +9,8 @@
 #include <cstdlib>
 
 #include "scene/description/mesh_source.h"
-#include "testing/generated_mesh.h"
 #include "testing/support/render_program.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

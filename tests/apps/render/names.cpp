@@ -10,7 +10,7 @@
 
 #include "base/shown_text.h"
 #include "image/exr/exr.h"
-#include "render/record/murmur3.h"
+#include "render/record/film_channel.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {

@@ -20,10 +20,10 @@
 #include "apps/render/explain.h"
 #include "cistula/transport/ray_tree.h"
 #include "image/picture/stored_picture.h"
-#include "render/frame_settings.h"
-#include "render/layer_list.h"
 #include "render/record/film_difference.h"
+#include "render/record/film_picture.h"
 #include "render/record/frame_header.h"
+#include "render/renderer.h"
 #include "scene/readers/json_reader.h"
 #include "sequence/sequence_loop.h"
 #include "sequence/stats.h"
@@ -235,7 +235,7 @@ TEST(RequestKeys, ThePagesHaveEveryOption) {
     const std::string pages = std::string(CISTULA_SOURCE_DIR) + "/docs/programs/";
     const std::string page = bytes_of(pages + "render.md") + bytes_of(pages + "running.md");
     for (const RequestKey& key : request_keys())
-        EXPECT_NE(page.find("`" + option_name(key)), std::string::npos) << key.name;
+        EXPECT_NE(page.find("`" + option_name(key.name)), std::string::npos) << key.name;
 }
 
 TEST(RequestKeys, AreReadFromJsonAsFromText) {
@@ -428,7 +428,7 @@ TEST(Backends, WithOneKernelThereIsNothingInstead) {
     EXPECT_ERROR(choose_devices(Backend::cuda, {}), ExitCode::device, message);
     EXPECT_ERROR(make_renderer<float>(Backend::cuda, compile_scene<float>(SceneDescription()), {}), ExitCode::device,
                  message);
-    EXPECT_EQ(list_devices_text(), message + "\n");
+    EXPECT_EQ(with_options(list_devices_text()), message + "\n");
 }
 
 TEST(Stats, NameTheGpusWhereOnesRan) {
@@ -487,7 +487,7 @@ TEST(RenderOptions, Layers) {
         try {
             parse_layers(text);
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::usage);
+            EXPECT_EQ(error.kind(), ErrorKind::usage);
             return error.what();
         }
         return "";
@@ -733,7 +733,7 @@ TEST(Stats, OfWhatTheDepthTookTheWorstFrameIsSaidOnce) {
     frame.frame = 8;
     frame.depth_loss = {0.01, 0.1, 0.5};
     totals.add(frame);
-    EXPECT_EQ(describe_depth_loss(totals, "a.#.exr", 4),
+    EXPECT_EQ(with_options(describe_depth_loss(totals, "a.#.exr", 4)),
               "a.#.exr: in 2 of 3 frames, most in frame 7: depth 4 may have taken up to 1 from a pixel and 0.15 in the "
               "mean, where the picture's mean is 0.5: see --depth and --layers error");
     SequenceTotals black;

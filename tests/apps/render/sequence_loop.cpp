@@ -8,10 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <thread>
 
 #include "apps/common/sequence_progress.h"
 #include "image/exr/exr.h"
 #include "scene/readers/read_scene.h"
+#include "sequence/render_sequence.h"
 #include "testing/support/render_program.h"
 
 namespace cistula {
@@ -97,8 +99,8 @@ class SequenceLoop : public RenderProgram {
             film(frames, backend);
             ADD_FAILURE() << "no error";
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), code);
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+            EXPECT_EQ(exit_code(error.kind()), code);
+            EXPECT_NE(with_options(error.what()).find(part), std::string::npos) << error.what();
         }
     }
 
@@ -238,6 +240,38 @@ TEST_F(SequenceLoop, AFailedWriteEndsTheFilm) {
         ASSERT_GE(written_.size(), 3u);
         EXPECT_EQ(written_[2].frame, 2);
     }
+}
+
+/// Counts what is told.
+struct Heard : SequenceEvents {
+    void planned(const FrameSettings&) override { told += "planned "; }
+    void ready(const RunStats&) override { told += "ready "; }
+    void begin(size_t frames) override { told += fmt::format("begin {} ", frames); }
+    void written(const FrameStats&) override { told += "written "; }
+    void end(const RunStats&, size_t done, size_t) override { told += fmt::format("end {}", done); }
+    std::string told;
+};
+
+TEST_F(SequenceLoop, SeveralRequestsAtOnceAreAsEachAlone) {
+    const auto render = [&](const std::string& name, Heard& heard) {
+        RenderRequest request;
+        request.scene = file("s.json");
+        request.output = file(name + ".#.exr");
+        request.preview = file(name + ".#.png");
+        request.threads = 2;
+        RenderProgress progress;
+        return render_sequence(request, heard, progress);
+    };
+    Heard alone, first, second;
+    EXPECT_EQ(render("alone", alone).totals.frames, 3u);
+    EXPECT_EQ(alone.told, "planned ready begin 3 written written written end 3");
+    std::thread other([&] { render("first", first); });
+    render("second", second);
+    other.join();
+    for (const Heard* heard : {&first, &second}) EXPECT_EQ(heard->told, alone.told);
+    for (const char* kind : {"0.exr", "2.exr", "1.png"})
+        for (const char* name : {"first", "second"})
+            EXPECT_EQ(bytes_of(file(std::string(name) + "." + kind)), bytes_of(file(std::string("alone.") + kind)));
 }
 
 }  // namespace

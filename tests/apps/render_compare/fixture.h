@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "apps/common/command_line.h"
 #include "image/exr/exr.h"
 #include "testing/support/run_program.h"
 

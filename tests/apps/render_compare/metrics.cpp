@@ -200,6 +200,33 @@ TEST_F(CompareMetrics, FlipIsWhatItsProgramSays) {
     EXPECT_EQ(metrics("flip", 0).at("flip").at("mean"), 0);
 }
 
+TEST_F(CompareMetrics, AreThresholds) {
+    std::vector<int> codes(width * height, 100);
+    put("a.exr", of_codes(codes));
+    codes[100] = 250;
+    put("b.exr", of_codes(codes));
+    EXPECT_TRUE(
+        contains(expect_code(0, {"a.exr", "b.exr", "--failssim", "0.1"}), "within the thresholds: least SSIM "));
+    EXPECT_TRUE(contains(expect_code(1, {"a.exr", "b.exr", "--failssim", "0.9999"}), "differ: least SSIM "));
+    std::filesystem::create_directory(file("bin"));
+    put_bytes(file("bin/flip"),
+              "#!/bin/sh\n[ $1 = --help ] && echo 'FLIP v1.7. --reference' && exit\n"
+              "for n in Mean 'Weighted median' Min Max; do echo \" $n: 0.25\"; done\n");
+    ASSERT_EQ(chmod(file("bin/flip").c_str(), 0700), 0);
+    const auto run_flip = [&](const std::string& bin, const char* most) {
+        return RunningProgram(CISTULA_BIN_DIR "/render-compare", {"a.exr", "b.exr", "--failflip", most}, file(""), "",
+                              [&] { setenv("PATH", bin.c_str(), 1); })
+            .wait();
+    };
+    const ProgramResult within = run_flip(file("bin"), "0.25"), over = run_flip(file("bin"), "0.2");
+    EXPECT_EQ(within.code, 0) << within.out << within.error;
+    EXPECT_TRUE(contains(over.out, "\ndiffer: FLIP 0.250000, --failflip 0.2\n")) << over.out;
+    EXPECT_EQ(over.code, 1);
+    const ProgramResult absent = run_flip(file("none"), "1");
+    EXPECT_EQ(absent.code, 1);
+    EXPECT_TRUE(contains(absent.out, "differ: FLIP is not known: NVIDIA's program")) << absent.out;
+}
+
 TEST_F(CompareMetrics, AreRefusedByName) {
     put("a.exr", picture_of({first_r}));
     expect_refused({"a.exr", "a.exr", "--metrics", "sim"}, ExitCode::usage,

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <functional>
 
+#include "apps/common/command_line.h"
 #include "apps/render_compare/fixture.h"
-#include "base/error.h"
 #include "image/exr/exr.h"
 #include "testing/support/special_values.h"
 
@@ -102,7 +102,10 @@ TEST_F(RenderCompare, Thresholds) {
     code(1, {"--fail", "0.1", "--failpercent", "100", "--hardfail", "0.3"});
     code(1, {"--fail", "0", "--hardfail", "1"});
     const auto all = code(0, {"--fail", "0.1", "--failpercent", "30", "--hardfail", "0.5"});
-    EXPECT_EQ(all.at("thresholds"), nlohmann::json({{"fail", 0.1}, {"failpercent", 30.0}, {"hardfail", 0.5}}));
+    EXPECT_EQ(
+        all.at("thresholds"),
+        nlohmann::json(
+            {{"fail", 0.1}, {"failpercent", 30.0}, {"hardfail", 0.5}, {"failflip", nullptr}, {"failssim", nullptr}}));
     EXPECT_EQ(
         all.at("verdict"),
         "within the thresholds: 2 of 8 pixels (25 %) over --fail 0.1, 30 % allowed; 0 pixels over --hardfail 0.5");
@@ -113,6 +116,65 @@ TEST_F(RenderCompare, Thresholds) {
     EXPECT_EQ(compare(1, {first_r, zeros_r}, {second_r, again}, {"--fail", "0.1"}).at("over_fail"), 3);
 }
 
+TEST_F(RenderCompare, WithThresholdsWhatBothHaveIsJudged) {
+    put("a.exr", picture_of({first_r, zeros}));
+    put("b.exr", picture_of({first_r}));
+    const std::string text = expect_code(0, {"a.exr", "b.exr", "--fail", "0.1"});
+    EXPECT_TRUE(contains(text, "not compared: channel G: only in the first\n")) << text;
+    EXPECT_TRUE(contains(text, "within the thresholds: 0 of 8 pixels")) << text;
+    expect_code(1, {"a.exr", "b.exr"});
+    expect_code(1, {"a.exr", "b.exr", "--fail", "0.1", "--layers", "G"});
+    expect_code(0, {"a.exr", "b.exr", "--layers", "R"});
+    put("b.exr", picture_of({{"Z", false, first_r.values}}));
+    EXPECT_TRUE(contains(expect_code(1, {"a.exr", "b.exr", "--fail", "9"}), "no channel is in both"));
+}
+
+TEST_F(RenderCompare, PartsThatAreNotChosenMayBeAlone) {
+    const LayeredPicture picture = picture_of({first_r});
+    write_exr(file("a.exr"), std::vector<PicturePart>{{"rgba", picture}, {"diffuse", picture}});
+    write_exr(file("b.exr"),
+              std::vector<PicturePart>{{"rgba", picture}, {"diffuse", picture}, {"spec", picture_of({second_r})}});
+    EXPECT_TRUE(contains(expect_code(1, {"a.exr", "b.exr"}), "part spec: only in the second\n"));
+    EXPECT_TRUE(contains(expect_code(0, {"a.exr", "b.exr", "--layers", "rgba"}), "that --layers leaves out: spec.R"));
+    expect_code(0, {"a.exr", "b.exr", "--fail", "0"});
+    expect_code(1, {"a.exr", "b.exr", "--layers", "spec"});
+}
+
+TEST_F(RenderCompare, FoldersAndSequencesAreComparedByNamesAndNumbers) {
+    for (const char* folder : {"a", "b"}) std::filesystem::create_directory(file(folder));
+    for (const char* name : {"a/f.0001.exr", "a/f.0002.exr", "b/f.0001.exr", "b/g1.exr", "b/g2.exr"})
+        put(name, picture_of({first_r}));
+    put_bytes(file("a/notes.txt"), "");
+    put("b/f.0002.exr", picture_of({second_r}));
+    const std::string text = expect_code(1, {"a", "b", "--json", "r.json"});
+    EXPECT_EQ(text,
+              "f.0001.exr: equal: every bit of 8 floats and of the header\nf.0002.exr: differ: 2 of 8 floats differ\n"
+              "g1.exr: only in the second\ng2.exr: only in the second\ndiffer: 3 of 4 images\n");
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(file("r.json"))).at("images")[1].at("max"), 0.5);
+    EXPECT_EQ(expect_code(0, {"a/f.####.exr", "b/g%d.exr"}),
+              "1: equal: every bit of 8 floats and of the header\n2: equal: every bit of 8 floats and of the "
+              "header\nhold: all 2 images\n");
+    expect_code(0, {"a", "a/", "--fail", "1", "-q", "--mask", "b/f.0001.exr"});
+    expect_refused({"a", "a/f.0001.exr"}, ExitCode::usage, "give two folders, or two sequences");
+    expect_refused({"a", "b", "--diff", "d.exr"}, ExitCode::usage, "--diff d.exr: is one image");
+    expect_refused({"c.##.exr", "a/f.##.exr"}, ExitCode::file, "c.##.exr: has no images");
+}
+
+TEST_F(RenderCompare, JsonGoesToStandardOutputWhereItIsAsked) {
+    put("a.exr", picture_of({first_r}));
+    put("b.exr", picture_of({second_r}));
+    EXPECT_FALSE(nlohmann::json::parse(expect_code(1, {"a.exr", "b.exr", "--json", "-"})).at("holds").get<bool>());
+    EXPECT_FALSE(exists("-"));
+}
+
+TEST_F(RenderCompare, PointersOfGitLfsAreNamed) {
+    put("a.exr", picture_of({first_r}));
+    for (const char* name : {"b.exr", "b.png"}) {
+        put_bytes(file(name), "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 4\n");
+        expect_refused({"a.exr", name}, ExitCode::file, "it is a pointer of Git LFS, not the file; git lfs pull");
+    }
+}
+
 TEST_F(RenderCompare, EqualImagesAreEqual) {
     const auto result = compare(0, {first_r, zeros}, {first_r, zeros});
     EXPECT_TRUE(result.at("holds").get<bool>());
@@ -121,14 +183,16 @@ TEST_F(RenderCompare, EqualImagesAreEqual) {
     EXPECT_EQ(expect_code(0, {"a.exr", "a.exr"}).find("differ:"), std::string::npos);
 }
 
-TEST_F(RenderCompare, WindowsAndChannelsMustBeTheSameWhateverTheThresholds) {
-    const auto differs = [&](const std::function<void(LayeredPicture&)>& change, const std::string& part) {
+TEST_F(RenderCompare, WindowsMustBeTheSameWhateverTheThresholds) {
+    const auto differs = [&](const std::function<void(LayeredPicture&)>& change, const std::string& part,
+                             const std::string& layers = "*") {
         LayeredPicture other = picture_of({first_r, zeros});
         put("a.exr", other);
         change(other);
         put("b.exr", other);
         std::filesystem::remove(file("d.exr"));
-        for (const Arguments& more : {Arguments{}, Arguments{"--fail", "100", "--failpercent", "100"}}) {
+        for (const Arguments& more :
+             {Arguments{}, Arguments{"--fail", "100", "--failpercent", "100", "--layers", layers}}) {
             Arguments arguments{"a.exr", "b.exr", "--diff", "d.exr"};
             arguments.insert(arguments.end(), more.begin(), more.end());
             const std::string text = expect_code(1, arguments);

@@ -1,13 +1,17 @@
 // `render-compare suite` from outside: what holds, what does not and how that is said, what --update changes, files.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <functional>
 
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
+#include "apps/common/command_line.h"
 #include "image/exr/exr.h"
 #include "image/picture/picture_hash.h"
 #include "sequence/backends.h"
@@ -299,7 +303,7 @@ TEST_F(SuiteProgram, SeveralAtOnceSayTheSameInTheSameOrder) {
     EXPECT_EQ(alone.size(), 12u);
     EXPECT_EQ(parts({"--json", "r.json", "--jobs", "5"}), alone);
     const std::string out = expect(1, {"--fail-fast", "--json", "r.json"});
-    expect_has(out, "\ndiffer: 1 of 4 pictures; 8 cases not begun after a failure\n");
+    expect_has(out, "\ndiffer: 1 of 4 pictures; 8 cases not rendered\n");
     EXPECT_EQ(json("r.json").at("not_begun"), 8);
 }
 
@@ -330,6 +334,156 @@ TEST_F(SuiteProgram, ThePageShowsWhatDiffersAndWhy) {
     expect_has(page, "its header does not name a scene.</p>");
     expect_has(page, "it shows the scene, or the camera, as it was before a change.</p>");
     expect_has(page, "this version gets others from the scene and the settings that its header names.</p>");
+    expect_has(page, "render-compare suite 's' value --update");
+}
+
+/// What a header claims decides neither memory nor time.
+TEST_F(SuiteProgram, ForgedGoldenImagesCostNothing) {
+    put_bytes(file("s/box.json"), R"({"film": {"width": 8, "height": 6}, "depth": 3, "cutoff": 0.01,
+        "ambient": 1, "background": 1,
+        "materials": {"m": {"reflection": 0.5, "transmission": 0.5, "diffuse": 0}},
+        "camera": {"position": [0, 5, 1], "target": [0, 0, 0]},
+        "objects": [{"solid": "cube", "material": "m"}, {"solid": "icosahedron", "center": [2, 0, 0], "material": "m"}]})");
+    cases({R"("name": "a", "golden": "a.exr", "scene": "box.json")"});
+    expect(0, {"--update"});
+    const std::string good = text("s/a.exr");
+    const auto page_of = [&](int depth, int supersample, double cutoff) {
+        put_bytes(file("s/a.exr"), good);
+        change("s/a.exr", [&](LayeredPicture& picture) {
+            picture.channels[0].values[27] = 9;
+            picture.attributes["cistula:depth"] = depth;
+            picture.attributes["cistula:supersample"] = supersample;
+            picture.attributes["cistula:cutoff"] = cutoff;
+        });
+        const ProgramResult result =
+            RunningProgram("/bin/sh",
+                           {"-c", "ulimit -v 4000000; exec " CISTULA_BIN_DIR "/render-compare suite s --html page"},
+                           file(""))
+                .wait();
+        EXPECT_EQ(result.code, 1) << result.error;
+        return text("page/index.html");
+    };
+    expect_has(page_of(1024, 64, 0), "only its values are known: the pixel's rays branch too often");
+    for (const double cutoff : {-1.0, std::nan("")})
+        expect_has(page_of(3, 1, cutoff), "its header names no grid of samples to follow");
+}
+
+TEST_F(SuiteProgram, AnInterruptionLeavesWhatIsKnown) {
+    cases({R"("name": "a", "golden": "none.exr")", R"("name": "b", "resolution": [1600, 900], "supersample": 64)"});
+    RunningProgram program(CISTULA_BIN_DIR "/render-compare",
+                           {"suite", "s", "--junit", "r.xml", "--json", "r.json", "--html", "page"}, file(""));
+    ASSERT_TRUE(program.wait_until(
+        [&] { return program.output_so_far().find("none.exr is not there") != std::string::npos; }, 60));
+    program.send(SIGTERM);
+    const auto start = std::chrono::steady_clock::now();
+    const ProgramResult result = program.wait();
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+    EXPECT_EQ(result.code, 130);
+    EXPECT_EQ(result.error, "render-compare: interrupted; 1 of 2 cases are judged\n");
+    EXPECT_EQ(json("r.json").at("not_begun"), 1);
+    EXPECT_FALSE(json("r.json").at("holds").get<bool>());
+    expect_has(text("r.xml"), R"(<testsuites tests="1" failures="1")");
+    expect_has(text("page/index.html"), ">a</a>");
+}
+
+TEST_F(SuiteProgram, CasesThatAreNotChosenCostNothing) {
+    std::string tags;
+    for (int i = 0; i < 20'000; ++i) tags += (i == 0 ? "\"t" : ", \"t") + std::to_string(i) + "\"";
+    cases({R"("name": "a")", R"("name": "many", "frames": "0-999999", "golden": "####.exr", "tags": [)" + tags + "]",
+           R"("name": "fifo", "scene": "fifo.json")"});
+    ASSERT_EQ(mkfifo(file("s/fifo.json").c_str(), 0600), 0);
+    put_bytes(file("r.json"), "");
+    const auto start = std::chrono::steady_clock::now();
+    expect(0, {"a", "--update", "--json", "r.json"});
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+    expect_refused_suite({"a", "--json", "s/0123.exr"}, ExitCode::usage, "the golden image of many and --json");
+    expect_has(expect(1, {"fifo"}), "s/fifo.json: cannot read: it is a pipe");
+}
+
+TEST_F(SuiteProgram, NamesOfAllCharactersMakeWholeXml) {
+    cases({"\"name\": \"a\", \"scene\": \"\xef\xbf\xbe\xef\xbf\xbf<&.json\""});
+    expect(1, {"--junit", "r.xml"});
+    expect_has(text("r.xml"), "\\ufffe\\uffff&lt;&amp;.json");
+}
+
+TEST_F(SuiteProgram, UpdatesOfOneSuiteAtOnceLoseNothing) {
+    cases({R"("name": "a", "resolution": [200, 150])", R"("name": "b", "resolution": [201, 150])"});
+    RunningProgram first(CISTULA_BIN_DIR "/render-compare", {"suite", "s", "a", "--update"}, file(""));
+    expect(0, {"b", "--update"});
+    EXPECT_EQ(first.wait().code, 0);
+    expect_has(expect(0), "hold: all 2 pictures\n");
+}
+
+TEST_F(SuiteProgram, AnUpdateKeepsWhatChangedMeanwhile) {
+    cases({R"("name": "a")", R"("name": "b")"}, R"("resolution": [900, 600], "supersample": 4)");
+    RunningProgram program(CISTULA_BIN_DIR "/render-compare", {"suite", "s", "--update"}, file(""));
+    ASSERT_TRUE(program.wait_until([&] { return program.output_so_far().find("\na ") != std::string::npos; }, 60));
+    cases({R"("name": "b")", R"("name": "a", "depth": 2)", R"("name": "c")"},
+          R"("resolution": [900, 600], "supersample": 4)");
+    const ProgramResult result = program.wait();
+    EXPECT_EQ(result.code, 3);
+    expect_has(result.error,
+               "s/suite.json: was changed while its cases were rendered; the hashes of these are not "
+               "recorded: a; run --update for them again\n");
+    const auto after = json("s/suite.json").at("cases");
+    EXPECT_TRUE(after.at(0).contains("hash"));
+    EXPECT_FALSE(after.at(1).contains("hash") || after.at(2).contains("hash"));
+}
+
+TEST_F(SuiteProgram, NothingIsWrittenOutsideOfItsFolder) {
+    fs::create_directories(file("out"));
+    fs::create_directory_symlink(file("out"), file("s/link"));
+    cases({R"("name": "up", "golden": "../out/a.exr")", R"("name": "link", "golden": "link/b.exr")",
+           R"("name": "whole", "golden": ")" + file("out/c.exr") + "\"", R"("name": "in", "golden": "g/../d.exr")"});
+    const std::string out = expect(1, {"--update"});
+    expect_has(out, "is outside of s, the suite's folder");
+    expect_has(out, "recorded: 1 of 4 pictures; 3 failed\n");
+    EXPECT_TRUE(fs::is_empty(file("out")));
+    EXPECT_TRUE(fs::exists(file("s/d.exr")));
+}
+
+TEST_F(SuiteProgram, PicturesOfOtherProgramsAreCases) {
+    render({}, "s/golden.exr");
+    render({}, "theirs.exr");
+    change("theirs.exr", [](LayeredPicture& picture) {
+        std::erase_if(picture.channels, [](const auto& channel) { return channel.name == "A"; });
+        picture.channels[0].values[7] += 0.001f;
+        picture.attributes.clear();
+    });
+    const std::string command = R"("command": ["sh", "-c", "cp ../theirs.exr \"$0\"", "{output}"], )";
+    cases({R"("name": "file", "rendered": "../theirs.exr", "golden": "golden.exr", "thresholds": {"fail": 0.01})",
+           R"("name": "bits", "rendered": "../theirs.exr", "golden": "golden.exr")",
+           R"("name": "run", )" + command + R"("golden": "golden.exr", "thresholds": {"failssim": 0.9})",
+           R"("name": "hash", )" + command + R"("frames": "0-1")",
+           R"("name": "bad", "command": ["sh", "-c", "echo no scene; exit 3", "{output}"], "golden": "golden.exr")"});
+    std::string out = expect(1, {"--json", "r.json", "--html", "page"});
+    expect_has(out, " command ");
+    expect_has(out, "within the thresholds: 0 of 384 pixels (0 %) over --fail 0.01");
+    expect_has(out, "layers of the golden image alone: A");
+    expect_has(out, "its command is not run: sh -c ");
+    EXPECT_EQ(json("r.json").at("cases")[0].at("backend"), "file");
+    expect_has(text("page/index.html"), "another program rendered it");
+    expect(0, {"hash", "--update", "--run-commands"});
+    out = expect(1, {"--run-commands"});
+    expect_has(out, "within the thresholds: least SSIM ");
+    expect_has(out, "failed: sh ended with exit code 3: no scene\\n\n");
+    expect_has(out, "\ndiffer: 2 of 6 pictures\n");
+    cases({R"("name": "a", "rendered": "a.exr", "depth": 3)"});
+    expect_refused_suite({}, ExitCode::usage, "another program renders; leave it out");
+    cases({R"("name": "a", "command": ["sh"])"});
+    expect_refused_suite({}, ExitCode::usage, "{output}");
+}
+
+TEST_F(SuiteProgram, ManyJobsWithLittleMemoryAreALineEach) {
+    cases({R"("name": "a")", R"("name": "b")", R"("name": "c")"});
+    expect(0, {"--update"});
+    const ProgramResult result =
+        RunningProgram("/bin/sh",
+                       {"-c", "ulimit -v 1500000; exec " CISTULA_BIN_DIR "/render-compare suite s --jobs 1024"},
+                       file(""))
+            .wait();
+    EXPECT_TRUE(result.code == 0 || result.code == 1) << result.code << result.error;
+    EXPECT_LE(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
 }
 
 TEST_F(SuiteProgram, ABackendThatIsNotThereIsSkippedOrRefused) {

@@ -5,7 +5,7 @@
 #include <regex>
 #include <stdexcept>
 
-#include "base/error.h"
+#include "apps/common/command_line.h"
 #include "compare/suite/json_edit.h"
 #include "compare/suite/suite.h"
 #include "compare/suite/suite_keys.h"
@@ -34,7 +34,7 @@ class SuiteFile : public ::testing::Test {
         try {
             read(text);
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), code);
+            EXPECT_EQ(exit_code(error.kind()), code);
             const std::string message = error.what(), file = folder_.file("suite.json") + ":";
             EXPECT_EQ(message.rfind(file, 0), 0u) << message;
             return message.substr(std::min(message.size(), file.size()));
@@ -165,7 +165,8 @@ TEST_F(SuiteFile, ValuesAreChecked) {
     expect_refused_case(R"("frames": "0-2", "hash": "00000000000000000000000000000000")",
                         " /cases/0/hash: expected an array of 3 hashes, one for each of \"frames\", found "
                         "'00000000000000000000000000000000'");
-    expect_refused_case(R"("golden": "a.png")", " /cases/0/golden: a.png: golden images are EXRs");
+    expect_refused_case(R"("golden": "a.png")",
+                        " /cases/0/golden: a.png: golden images, and pictures rendered elsewhere, are EXRs");
     expect_refused_case(R"("frames": "0-2", "golden": "a.exr")",
                         " /cases/0/golden: is one file, and \"frames\" names 3; put #### into its name");
 }
@@ -191,7 +192,7 @@ TEST_F(SuiteFile, AMissingFileIsSaid) {
             read_suite(folder_.file(folder));
             ADD_FAILURE() << folder;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file);
+            EXPECT_EQ(error.kind(), ErrorKind::file);
             EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
         }
     }
@@ -252,24 +253,30 @@ TEST(SuiteSchema, KnowsAllColorSpaces) {
 
 TEST(JsonEdit, ChangesOneValue) {
     const std::string text = "\xEF\xBB\xBF{ // \"b\": 0\n  \"a\": [1, {\"b\": \"x]\\\"}\"}, 3 /* , */ ], \"b\": 7\n}\n";
-    EXPECT_EQ(with_json_value(text, "/a/1/b", "9"),
+    EXPECT_EQ(with_json_values(text, {{"/a/1/b", "9"}}),
               "\xEF\xBB\xBF{ // \"b\": 0\n  \"a\": [1, {\"b\": 9}, 3 /* , */ ], \"b\": 7\n}\n");
-    EXPECT_EQ(with_json_value(text, "/a/2", "[]"),
+    EXPECT_EQ(with_json_values(text, {{"/a/2", "[]"}}),
               "\xEF\xBB\xBF{ // \"b\": 0\n  \"a\": [1, {\"b\": \"x]\\\"}\"}, [] /* , */ ], \"b\": 7\n}\n");
-    EXPECT_EQ(with_json_value(text, "/b", "\"x\""),
+    EXPECT_EQ(with_json_values(text, {{"/b", "\"x\""}}),
               "\xEF\xBB\xBF{ // \"b\": 0\n  \"a\": [1, {\"b\": \"x]\\\"}\"}, 3 /* , */ ], \"b\": \"x\"\n}\n");
-    EXPECT_THROW(with_json_value(text, "/c/1", "0"), std::logic_error);
-    EXPECT_THROW(with_json_value(text, "/a/7", "0"), std::logic_error);
+    EXPECT_THROW(with_json_values(text, {{"/c/1", "0"}}), std::logic_error);
+    EXPECT_THROW(with_json_values(text, {{"/a/7", "0"}}), std::logic_error);
 }
 
 TEST(JsonEdit, AddsAKeyAsTheObjectIsWritten) {
-    EXPECT_EQ(with_json_value("{}", "/a", "1"), "{\"a\": 1}");
-    EXPECT_EQ(with_json_value("{\"a\": {\"b\": 1}}", "/a/c", "2"), "{\"a\": {\"b\": 1, \"c\": 2}}");
-    EXPECT_EQ(with_json_value("{\"a\": 1}", "/b", "[\n  2,\n  3\n]"), "{\"a\": 1, \"b\": [2, 3]}");
-    EXPECT_EQ(with_json_value("{\n    \"a\": 1 // one\n}", "/b", "[\n  2\n]"),
+    EXPECT_EQ(with_json_values("{}", {{"/a", "1"}}), "{\"a\": 1}");
+    EXPECT_EQ(with_json_values("{\"a\": {\"b\": 1}}", {{"/a/c", "2"}}), "{\"a\": {\"b\": 1, \"c\": 2}}");
+    EXPECT_EQ(with_json_values("{\"a\": 1}", {{"/b", "[\n  2,\n  3\n]"}}), "{\"a\": 1, \"b\": [2, 3]}");
+    EXPECT_EQ(with_json_values("{\n    \"a\": 1 // one\n}", {{"/b", "[\n  2\n]"}}),
               "{\n    \"a\": 1,\n    \"b\": [\n      2\n    ] // one\n}");
-    EXPECT_EQ(with_json_value("{\n\t\"a\": 1,\n\t\"b\": {}\n}", "/c", "2"),
+    EXPECT_EQ(with_json_values("{\n\t\"a\": 1,\n\t\"b\": {}\n}", {{"/c", "2"}}),
               "{\n\t\"a\": 1,\n\t\"b\": {},\n\t\"c\": 2\n}");
+}
+
+TEST(JsonEdit, ChangesSeveralValuesAndKnowsWhereCommentsEnd) {
+    EXPECT_EQ(with_json_values("{\"a\": [ // {\"b\": 0},\r{\"b\": 1, \"c\": 2},\n{}]}",
+                               {{"/a/0/c", "3"}, {"/a/0/d", "4"}, {"/a/0/e", "5"}, {"/a/1/b", "6"}}),
+              "{\"a\": [ // {\"b\": 0},\r{\"b\": 1, \"c\": 3, \"d\": 4, \"e\": 5},\n{\"b\": 6}]}");
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include <functional>
 
 #include "apps/render_compare/fixture.h"
-#include "testing/support/exr_parts.h"
+#include "testing/support/pictures/exr_parts.h"
 
 namespace cistula {
 namespace {
@@ -78,7 +78,7 @@ TEST_F(CompareWholeFile, PartsAreMatchedByName) {
     EXPECT_TRUE(contains(text, "not compared: the order of parts\n")) << text;
     parts[1].name = "colors";
     put_parts("b.exr", parts);
-    for (const Arguments& more : {Arguments{}, Arguments{"--fail", "100"}}) {
+    for (const Arguments& more : {Arguments{}, Arguments{"--fail", "100", "--layers", "*"}}) {
         Arguments arguments{"a.exr", "b.exr"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const std::string unmatched = expect_code(1, arguments);

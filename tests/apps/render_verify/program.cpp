@@ -10,9 +10,10 @@
 
 #include "apps/common/command_line.h"
 #include "apps/render_verify/program.h"
-#include "apps/render_verify/scenes.h"
 #include "testing/support/gpu.h"
 #include "testing/support/run_program.h"
+#include "verify/case.h"
+#include "verify/cases/scenes.h"
 
 namespace cistula::verify {
 namespace {
@@ -88,10 +89,93 @@ int code_of(const Case& one, nlohmann::json* record = nullptr, Arguments more = 
     more.insert(more.begin(), {"render-verify", "--json", file});
     std::vector<const char*> argv;
     for (const std::string& argument : more) argv.push_back(argument.c_str());
+    const std::vector<Case> table{one};
     const int code = run_program("render-verify", "allow it more",
-                                 [&] { return verify_program(int(argv.size()), argv.data(), {one}); });
+                                 [&] { return verify_program(int(argv.size()), argv.data(), &table); });
     if (record) *record = nlohmann::json::parse(bytes_of(file));
     return code;
+}
+
+// ---- the library
+
+/// A case measures the draws of its rays.
+struct Drawn {
+    template <class Real, class Tracer>
+    void operator()(const Setup<Real>& setup, const Tracer&, uint64_t i, Tally& tally) const {
+        tally.measure(setup.draw(i).template unit<double>());
+    }
+};
+void add_drawn(Plan& plan) {
+    SceneDescription scene = empty_scene();
+    add_object(scene, solid_object(PlatonicSolid::cube));
+    plan.add("a cube", scene, Drawn{}, {}, plan.rays(10, 10));
+}
+
+/// Options for a table of cases, on one intersector in one precision.
+Options options_of(const std::vector<Case>& table) {
+    Options options;
+    options.table = &table;
+    options.intersectors = {IntersectorKind::bvh};
+    options.precisions = {Precision::double_};
+    return options;
+}
+
+TEST(Verify, AFunctionTellsRowsAndEvents) {
+    each_ray = [](uint64_t i, Tally& tally) { tally.expect(i != 3); };
+    const std::vector<Case> table{counts, measures, broken};
+    Options options = options_of(table);
+    options.cases = {"made/counts", "made/b*"};
+    std::vector<std::string> begun, finished;
+    options.begun = [&](const std::string& name) { begun.push_back(name); };
+    options.finished = [&](const Row& row) { finished.push_back(row.complaint); };
+    RenderProgress progress;
+    const std::vector<Row> rows = run(options, progress);
+    EXPECT_EQ(begun, (std::vector<std::string>{"made/counts", "made/broken"}));
+    EXPECT_EQ(finished, (std::vector<std::string>{"1 of 10 failed; first: a cube, ray 3",
+                                                  "what is broken on purpose is not caught"}));
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[0].name, "made/counts");
+    EXPECT_EQ(rows[0].group, "made");
+    EXPECT_EQ(rows[0].exact, "what the test says");
+    EXPECT_EQ(rows[0].intersector, IntersectorKind::bvh);
+    EXPECT_EQ(rows[0].precision, Precision::double_);
+    EXPECT_EQ(rows[0].measured, 1);
+    EXPECT_EQ(rows[0].bound, 0);
+    EXPECT_FALSE(rows[0].holds());
+    EXPECT_TRUE(rows[1].must_fail);
+    EXPECT_EQ(rows[1].bound, 3);
+}
+
+TEST(Verify, ASeedChangesTheDrawsAndAScaleTheirNumber) {
+    const std::vector<Case> table{of_rays<Drawn>("made/drawn", at_most(1, "draws"), add_drawn)};
+    const auto row_with = [&](uint64_t seed, uint32_t scale) {
+        Options options = options_of(table);
+        options.seed = seed;
+        options.scale = scale;
+        RenderProgress progress;
+        return run(options, progress).at(0);
+    };
+    EXPECT_EQ(row_with(0, 1).measured, row_with(0, 1).measured);
+    EXPECT_NE(row_with(0, 1).measured, row_with(1, 1).measured);
+    EXPECT_EQ(row_with(0, 1).tried, 10u);
+    EXPECT_EQ(row_with(0, 3).tried, 30u);
+}
+
+TEST(Verify, AStopEndsTheRunAmongTheRaysOfACase) {
+    RenderProgress progress;
+    each_ray = [&](uint64_t i, Tally& tally) {
+        tally.expect(true);
+        if (i == 3) progress.stop = true;
+    };
+    const std::vector<Case> table{counts, broken};
+    Options options = options_of(table);
+    options.finished = [](const Row&) { ADD_FAILURE() << "a row of a case that was stopped"; };
+    try {
+        run(options, progress);
+        ADD_FAILURE() << "not stopped";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::interrupted);
+    }
 }
 
 TEST(Verify, MemoryThatRunsOutEndsTheProgramAndFailsNoCase) {
@@ -252,6 +336,16 @@ TEST_F(RenderVerify, ABackendThatIsNotThereIsAnError) {
     if (test::missing_gpu().empty()) GTEST_SKIP() << "this machine has a GPU";
     for (const char* backend : {"cuda", "all"})
         expect_refused({"--backend", backend, "--quick", "--case", "geometry/fans"}, ExitCode::device, "");
+}
+
+TEST_F(RenderVerify, AnInterruptedRunSaysSoAndWritesNothing) {
+    RunningProgram running(CISTULA_BIN_DIR "/render-verify", {"--case", "mirrors/*", "--json", "a.json"}, file(""));
+    ASSERT_TRUE(running.wait_until([&] { return !running.output_so_far().empty(); }, 60));
+    running.send(SIGINT);
+    const ProgramResult result = running.wait();
+    EXPECT_EQ(result.code, 130) << result.error;
+    EXPECT_EQ(result.error, "render-verify: interrupted; nothing was written\n");
+    EXPECT_FALSE(std::filesystem::exists(file("a.json")));
 }
 
 TEST_F(RenderVerify, HelpShowsEveryOptionAsItIsWritten) {

@@ -10,8 +10,7 @@
 #include "backend_cuda/host/cuda_renderer.h"
 #include "backend_embree/embree/embree_renderer.h"
 #include "scene/description/without_effect.h"
-#include "testing/generated_scene.h"
-#include "testing/support/contact_search.h"
+#include "testing/support/contacts/contact_search.h"
 #include "testing/support/endless_scene.h"
 #include "testing/support/expect_error.h"
 #include "testing/support/golden.h"
@@ -19,6 +18,7 @@
 #include "testing/support/scene.h"
 #include "testing/support/shipped_scenes.h"
 #include "testing/support/stopping.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 
@@ -193,7 +193,7 @@ TYPED_TEST(Cuda, AFrameInPartsIsTheSame) {
             render(*this->gpu(scene, options), scene, settings);
             ADD_FAILURE() << "a row fits into 1000 bytes";
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::device) << error.what();
+            EXPECT_EQ(error.kind(), ErrorKind::device) << error.what();
         }
     }
 }

@@ -4,11 +4,11 @@
 #include "backend_cuda/host/cuda_renderer.h"
 #include "backend_embree/embree/embree_renderer.h"
 #include "scene/description/camera_path.h"
-#include "testing/generated_scene.h"
-#include "testing/support/film_layers.h"
 #include "testing/support/golden.h"
 #include "testing/support/gpu.h"
+#include "testing/support/pictures/film_layers.h"
 #include "testing/support/shipped_scenes.h"
+#include "verify/scenes/generated_scene.h"
 
 using namespace cistula;
 

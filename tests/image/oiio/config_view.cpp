@@ -93,7 +93,7 @@ TEST_F(ConfigViews, FindLinearRec709) {
     EXPECT_EQ(codes("Plain", {1, 0, 0}), (std::vector<int>{128, 0, 0}));
     EXPECT_EQ(
         ConfigView("Plain", {}).warning(),
-        "--view: the config of $OCIO has neither a space of the name lin_rec709_scene nor the role aces_interchange; "
+        "`view`: the config of $OCIO has neither a space of the name lin_rec709_scene nor the role aces_interchange; "
         "linear Rec. 709 is taken for its scene_linear, other");
 }
 
@@ -106,8 +106,8 @@ TEST_F(ConfigViews, OfOtherNamesAreRefused) {
         ConfigView("Root", {"srgb"});
         ADD_FAILURE() << "no error";
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::file);
-        EXPECT_EQ(std::string(error.what()).rfind("--view Root: $OCIO, " + path_ + ": ", 0), 0u) << error.what();
+        EXPECT_EQ(error.kind(), ErrorKind::file);
+        EXPECT_EQ(std::string(error.what()).rfind("`view` Root: $OCIO, " + path_ + ": ", 0), 0u) << error.what();
     }
 }
 

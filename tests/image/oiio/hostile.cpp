@@ -24,7 +24,7 @@ std::string outcome(TextureReader& reader, const std::string& name, const std::s
         ClampedTexels clamped;
         reader.read(path, &clamped);
     } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ExitCode::file);
+        EXPECT_EQ(error.kind(), ErrorKind::file);
         const std::string what = error.what();
         EXPECT_EQ(what.substr(0, start.size()), start);
         for (const char c : what) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << what;
@@ -44,7 +44,7 @@ std::string outcome(const std::string& name, const std::string& bytes,
 constexpr const char* too_large =
     "its size is 60000x60000, which takes 43.2 GB of memory; textures may take 0.1 GB; give a smaller one, or raise "
     "the "
-    "limit (--max-texture-gb of render)";
+    "limit (`max_texture_gb` of render)";
 
 TEST(HostilePictures, SizesThatHeadersClaim) {
     TextureReader reader({100'000'000, 20});

@@ -21,7 +21,7 @@ class MisreadPictures : public testing::Test {
             const ColorPicture read = reader_.read(path, nullptr);
             if (picture) *picture = read;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file);
+            EXPECT_EQ(error.kind(), ErrorKind::file);
             EXPECT_EQ(std::string(error.what()).rfind(start, 0), 0u) << error.what();
             return std::string(error.what()).substr(start.size());
         }

@@ -10,10 +10,10 @@
 #include "image/picture/raw_picture.h"
 #include "testing/support/byte_order.h"
 #include "testing/support/expect_error.h"
-#include "testing/support/icc_profiles.h"
+#include "testing/support/pictures/icc_profiles.h"
+#include "testing/support/pictures/srgb_codes.h"
 #include "testing/support/scratch_directory.h"
 #include "testing/support/special_values.h"
-#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {
@@ -196,7 +196,7 @@ TEST(Textures, Errors) {
             read_texture(scratch.file("bad.bmp"));
             ADD_FAILURE() << "no error for " << bad.size() << " bytes";
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file);
+            EXPECT_EQ(error.kind(), ErrorKind::file);
             EXPECT_EQ(std::string(error.what()).rfind(scratch.file("bad.bmp") + ": cannot read: ", 0), 0u);
             EXPECT_GT(std::string(error.what()).size(), scratch.file("bad.bmp").size() + 20) << error.what();
         }

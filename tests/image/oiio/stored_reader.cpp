@@ -92,7 +92,7 @@ TEST(StoredReader, FilesThatAreCutOffAreErrors) {
             reader.read(scratch.file("b.png"));
             ADD_FAILURE() << "no error at " << size;
         } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::file) << size;
+            EXPECT_EQ(error.kind(), ErrorKind::file) << size;
         }
     }
 }

@@ -7,8 +7,8 @@
 #include "image/picture/picture_io.h"
 #include "image/reader/oiio_module.h"
 #include "testing/support/expect_error.h"
+#include "testing/support/pictures/srgb_codes.h"
 #include "testing/support/render_program.h"
-#include "testing/support/srgb_codes.h"
 
 namespace cistula {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "backend_embree/embree/embree_renderer.h"
-#include "render/frame_settings.h"
 #include "render/record/film_picture.h"
+#include "render/renderer.h"
 #include "scene/readers/read_scene.h"
 
 namespace cistula::test {

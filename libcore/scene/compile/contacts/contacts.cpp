@@ -250,8 +250,8 @@ class ContactSearch {
         while ((tried += for_each_near(tree, i, [](uint32_t, bool) {})) <= most_near_pairs) ++i;
         throw scene_error(*source_.description, source_.solids[faces_[i].solid].place,
                           "more than " + std::to_string(most_near_pairs / 1'000'000) +
-                              " million pairs of faces come near one another, as where many objects are in one "
-                              "place; leave out those that are there several times");
+                              " million pairs of faces come near one another, as where many objects are in one place",
+                          "leave out those that are there several times");
     }
 
     void compare(uint32_t i, uint32_t j, bool one_solid, const PlaneSets& sets, FoundPairs& found) const {
@@ -272,7 +272,8 @@ class ContactSearch {
     double tau() const { return 0x1p-20 * normalization_.extent; }
 
     void add_near(const FlatFace& a, const FlatFace& b, double gap, std::vector<NearPair>& to) {
-        const uint32_t first = std::min(a.solid, b.solid), second = std::max(a.solid, b.solid);
+        const uint32_t first = std::min(a.solid, b.solid);
+        const uint32_t second = std::max(a.solid, b.solid);
         const bool by_size = 1.1 * gap > min_or_second(body(a).reach.most, body(b).reach.most);
         const auto known =
             near_solids_.try_emplace((uint64_t(first) << 32 | second) << 1 | (&to == &contacts_.near), to.size());
@@ -318,7 +319,8 @@ class ContactSearch {
 
     /// Whether triangles of two faces overlap, or of one face.
     bool overlapping(uint32_t a, uint32_t b) const {
-        const auto first = triangles_of(a), second = triangles_of(b);
+        const auto first = triangles_of(a);
+        const auto second = triangles_of(b);
         for (size_t i = 0; i < first.size(); ++i)
             for (size_t j = 0; j < second.size(); ++j)
                 if ((a != b || i != j) && overlap(first[i], second[j], reach * tau())) return true;

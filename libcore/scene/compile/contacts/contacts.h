@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scene/compile/contacts/flat_faces.h"
-#include "scene/compile/meshes/mesh_size.h"
+#include "scene/compile/meshes/normalized_mesh.h"
 
 namespace cistula {
 

@@ -94,7 +94,8 @@ class FaceGrowth {
         for (uint32_t i = 0; i < triangles_.size(); ++i)
             for (int k = 0; k < 3; ++k) {
                 const auto& c = body_.facets[triangles_[i]];
-                const uint32_t a = body_.welded[c[size_t(k)]], b = body_.welded[c[size_t((k + 1) % 3)]];
+                const uint32_t a = body_.welded[c[size_t(k)]];
+                const uint32_t b = body_.welded[c[size_t((k + 1) % 3)]];
                 edges_.push_back({std::min(a, b), std::max(a, b), i});
             }
         std::vector<uint32_t> order(edges_.size());

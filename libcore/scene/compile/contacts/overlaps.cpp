@@ -7,7 +7,7 @@
 #include "base/box.h"
 #include "base/default_rounding.h"
 #include "cistula/traversal/bvh.h"
-#include "scene/compile/arrays.h"
+#include "scene/compile/compiled_scene.h"
 
 namespace cistula {
 namespace {
@@ -80,7 +80,9 @@ class OverlapSearch {
     template <class Found>
     void look_through(const Box& box, const Found& found) {
         for (int i = 0; i < 3 * lines_across * lines_across && !found(); ++i) {
-            const int axis = i % 3, u = (axis + 1) % 3, v = (axis + 2) % 3;
+            const int axis = i % 3;
+            const int u = (axis + 1) % 3;
+            const int v = (axis + 2) % 3;
             dvec3 start, direction(0);
             start[axis] = -1.25 * double(view_.extent);
             direction[axis] = 1;

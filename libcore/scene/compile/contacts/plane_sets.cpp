@@ -5,7 +5,8 @@
 namespace cistula {
 
 bool PlaneSets::join(uint32_t a, uint32_t b) {
-    uint32_t stays = root(a), goes = root(b);
+    uint32_t stays = root(a);
+    uint32_t goes = root(b);
     if (stays == goes) return true;
     if (is_larger(set(goes).largest, set(stays).largest)) std::swap(stays, goes);
     Set &kept = set(stays), &added = set(goes);

@@ -1,4 +1,4 @@
-#include "scene/compile/contacts/shared_planes.h"
+#include "scene/compile/solids/placed_bodies.h"
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 #include "cistula/model/scene_view.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/contacts/contact_moves.h"
-#include "scene/compile/meshes/clusters.h"
+#include "scene/compile/meshes/mesh_apex.h"
 #include "scene/compile/solids/placed_bodies.h"
 
 namespace cistula {

@@ -43,7 +43,8 @@ void reach_edge_lights(CompiledScene<Real>& scene, const std::vector<uint32_t>& 
         SlabGroup<Real>& group = first_group(scene, owners[i]);
         const VisibleLight<Real>& light = scene.visible_lights[i];
         const Vec3<double> out = Vec3<double>(light.center) - Vec3<double>(scene.solids[owners[i]].center);
-        const double radius = double(light.radius), far = std::sqrt(dot(out, out)) + radius;
+        const double radius = double(light.radius);
+        const double far = std::sqrt(dot(out, out)) + radius;
         group.light_reach = max_or_second(Real(radius + light_slack * double(scene.extent)), group.light_reach);
         group.light_square = max_or_second(Real(far * far) + Real(sphere_padding), group.light_square);
     }

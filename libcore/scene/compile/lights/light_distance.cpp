@@ -23,7 +23,8 @@ bool is_near(const NormalizedLight& light, double box_distance, double extent) {
 }
 
 double distance_to_segment(const dvec3& a, const dvec3& b, const dvec3& p) {
-    const dvec3 along = b - a, from = p - a;
+    const dvec3 along = b - a;
+    const dvec3 from = p - a;
     const double square = dot(along, along);
     const double share = square > 0 ? clamped(dot(from, along) / square, 0.0, 1.0) : 0;
     return length(from - share * along);
@@ -43,7 +44,9 @@ double distance_to_triangle(const std::array<dvec3, 3>& corner, const dvec3& p) 
 
 /// Whether a light lies in the plane of a triangle, and the triangle's normal is exact enough for incident_distance.
 bool is_in_plane(const std::array<dvec3, 3>& corner, const dvec3& p, double tolerance) {
-    const dvec3 ab = corner[1] - corner[0], bc = corner[2] - corner[1], ca = corner[0] - corner[2];
+    const dvec3 ab = corner[1] - corner[0];
+    const dvec3 bc = corner[2] - corner[1];
+    const dvec3 ca = corner[0] - corner[2];
     const double longest = max_or_second(dot(ab, ab), max_or_second(dot(bc, bc), dot(ca, ca)));
     const dvec3 normal = cross(ab, bc);
     const double size = length(normal);
@@ -117,7 +120,8 @@ std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& l
         double outside = -INFINITY, within = INFINITY;
         for (uint32_t slab = 0; slab < solid.planes.size(); ++slab) {
             const PlanePair& planes = solid.planes[slab];
-            const double n = dot(planes.normal, p), beyond[2] = {planes.low - n, n - planes.high};
+            const double n = dot(planes.normal, p);
+            const double beyond[2] = {planes.low - n, n - planes.high};
             for (uint32_t side = 0; side < 2; ++side) {
                 const bool on =
                     lies_on(faces[i], solid.solid, 2 * slab + side) && magnitude(beyond[side]) <= in_plane * rounding;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scene/compile/lights/compile_lights.h"
-#include "scene/compile/meshes/clusters.h"
+#include "scene/compile/meshes/mesh_apex.h"
 
 namespace cistula {
 

@@ -68,8 +68,8 @@ Error too_near(const SceneSource& source, const NormalizedLight& light, const In
                            digits_text(light.radius * unit_length) + " lets " + source.solids[solid].place +
                            " be lit as brightly as " + digits_text(brightest) +
                            ", and sums that hold this are too coarse for the rest, which is no brighter than " +
-                           digits_text(limit / largest_contrast) + "; give a radius of " +
-                           digits_text(1.05 * radius, 2) + " or more, or move it off the surface");
+                           digits_text(limit / largest_contrast),
+                       "give a radius of " + digits_text(1.05 * radius, 2) + " or more, or move it off the surface");
 }
 
 /// Brings a visible light's radiance down to the limit if it is its color, and refuses it if it was given.
@@ -82,8 +82,8 @@ void limit_glow(const SceneSource& source, NormalizedLight& light, double limit,
                           its(light, "its", "the edge lights'") + std::string(" glow of ") + digits_text(glow) +
                               " is so much brighter than all that lights shine on, " +
                               digits_text(limit / largest_contrast) +
-                              " at most, that sums that hold both are too coarse; give a glow of " +
-                              digits_text(0.95 * limit, 2) + " or less" + remedy);
+                              " at most, that sums that hold both are too coarse",
+                          "give a glow of " + digits_text(0.95 * limit, 2) + " or less" + remedy);
     light.radiance *= limit / glow;
     const std::string warning = light.place + ": " + its(light, "it is", "its edge lights are") +
                                 " shown with a glow of " + digits_text(largest_component(light.radiance), 2) +
@@ -118,7 +118,8 @@ dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures, cons
         }
         bound = largest_of(bound, local);
     }
-    const double limit = largest_component(lit) * largest_contrast, most = largest_component(bound);
+    const double limit = largest_component(lit) * largest_contrast;
+    const double most = largest_component(bound);
     if (most > limit)
         throw too_near(source, lights[at_brightest.strongest], at_brightest, brightest, most, limit, unit_length);
     for (NormalizedLight& light : lights) {
@@ -137,7 +138,8 @@ RadianceScale radiance_scale(const SceneDescription& scene, const dvec3& bound, 
         if (!(used.x >= largest_component(bound)) || !is_finite(used.x))
             throw scene_error(scene, "/frame/bound",
                               "is " + digits_text(used.x) + ", but the scene's radiance can reach " +
-                                  digits_text(largest_component(bound)) + "; give that or more");
+                                  digits_text(largest_component(bound)),
+                              "give that or more");
     }
     used *= bound_slack;
     const double largest = largest_component(used);
@@ -146,8 +148,8 @@ RadianceScale radiance_scale(const SceneDescription& scene, const dvec3& bound, 
         throw scene_error(
             scene, "",
             "the radiance bound is " + digits_text(largest) + ", above 2^" +
-                (single_precision ? "100, what single precision can take; use --precision double or dimmer lights"
-                                  : "127, what an image can hold; use dimmer lights"));
+                (single_precision ? "100, what single precision can take" : "127, what an image can hold"),
+            single_precision ? "use `precision` double or dimmer lights" : "use dimmer lights");
     if (largest > 0) {
         int exponent;
         const double mantissa = std::frexp(largest, &exponent);  // in [1/2, 1)

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "scene/compile/solids/solid_planes.h"
+#include "scene/compile/solids/compile_solids.h"
 
 namespace cistula {
 namespace {

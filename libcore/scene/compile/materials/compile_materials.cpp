@@ -112,10 +112,10 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
     const dvec3 absorption =
         m.transparency == Transparency::opaque ? dvec3{0} : material.absorption / normalization.factor;
     if (largest_component(absorption) * size > largest_absorption)
-        throw scene_error(scene, "",
-                          "material " + material.name +
-                              " has an absorption above 2^20 per size of a solid that is made " +
-                              "of it; such a solid is opaque: give it transmission 0");
+        throw scene_error(
+            scene, "",
+            "material " + material.name + " has an absorption above 2^20 per size of a solid that is made of it",
+            "such a solid is opaque: give it transmission 0");
     m.absorption = Vec3<Real>(absorption);
     m.index = material.index;
     m.opaque = 0;

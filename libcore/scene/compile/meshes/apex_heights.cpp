@@ -18,9 +18,11 @@ struct AngleFactors {
 
 AngleFactors angle_factors(const dvec3& edge_start, const dvec3& edge, const dvec3& normal, const dvec3& opposite) {
     // In the plane perpendicular to the edge: x points into the triangle, y along its normal.
-    const dvec3 inward = cross(normal, edge), to = opposite - edge_start;
+    const dvec3 inward = cross(normal, edge);
+    const dvec3 to = opposite - edge_start;
     const double normal_length = length(normal);
-    const double x = dot(to, inward) / (normal_length * length(edge)), y = dot(to, normal) / normal_length;
+    const double x = dot(to, inward) / (normal_length * length(edge));
+    const double y = dot(to, normal) / normal_length;
     const double r = square_root(x * x + y * y);
     if (!(r > 0)) return {};  // a neighbor of zero area has no direction
     if (x > 0 && y == 0) return {0, 0};
@@ -80,13 +82,15 @@ class CrowdedEdges {
         const dvec3 off = size.x <= size.y && size.x <= size.z ? dvec3{1, 0, 0}
                           : size.y <= size.z                   ? dvec3{0, 1, 0}
                                                                : dvec3{0, 0, 1};
-        const dvec3 u = normalized(cross(base.edge, off)), v = normalized(cross(base.edge, u));
+        const dvec3 u = normalized(cross(base.edge, off));
+        const dvec3 v = normalized(cross(base.edge, u));
         std::vector<std::pair<double, uint32_t>> order;
         uint32_t h = first;
         do {
             factors_[h] = {};
             const dvec3 to = MeshEdge(mesh_, h).opposite - base.start;
-            const double x = dot(to, u), y = dot(to, v);
+            const double x = dot(to, u);
+            const double y = dot(to, v);
             if (x != 0 || y != 0) order.push_back({pseudo_angle(x, y), h});
             h = next(h);
         } while (h != first);

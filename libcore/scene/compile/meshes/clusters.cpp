@@ -1,4 +1,4 @@
-#include "scene/compile/meshes/clusters.h"
+#include "scene/compile/meshes/mesh_apex.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,8 @@ GroupBox halve(Tree& tree, const std::vector<GroupBox>& boxes, uint32_t begin, u
     tree.nodes.emplace_back();
     const uint32_t middle = begin + (end - begin + 1) / 2;
     for (int side = 0; side < 2; ++side) {
-        const uint32_t first = side ? middle : begin, last = side ? end : middle;
+        const uint32_t first = side ? middle : begin;
+        const uint32_t last = side ? end : middle;
         int32_t child = ~static_cast<int32_t>(first);
         uint32_t count = last - first;
         GroupBox box = nothing;

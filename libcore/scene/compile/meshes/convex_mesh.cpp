@@ -1,4 +1,4 @@
-#include "scene/compile/meshes/convex_mesh.h"
+#include "scene/compile/solids/placed_bodies.h"
 
 #include <algorithm>
 #include <numeric>
@@ -142,7 +142,8 @@ class ConvexSearch {
             if (taken[i]) continue;
             const HullFacet& facet = facets_[i];
             PlanePair pair{facet.normal, -INFINITY, facet.offset};
-            uint32_t low = no_plane, high = facet.plane;
+            uint32_t low = no_plane;
+            uint32_t high = facet.plane;
             for (size_t j = i + 1; j < facets_.size() && pair.low == -INFINITY; ++j) {
                 if (taken[j] || !make_slab(facet, facets_[j], pair)) continue;
                 taken[j] = true;
@@ -160,7 +161,8 @@ class ConvexSearch {
         const bool ahead = largest_is_positive(facet.normal);
         const HullFacet &above = ahead ? facet : other, &below = ahead ? other : facet;
         const dvec3 normal = normalized(above.area - below.area);
-        const Range high = range(normal, above.corners), low = range(normal, below.corners);
+        const Range high = range(normal, above.corners);
+        const Range low = range(normal, below.corners);
         if (!high.within(2 * flat_) || !low.within(2 * flat_)) return false;
         pair = {normal, low.middle(), high.middle()};
         return true;

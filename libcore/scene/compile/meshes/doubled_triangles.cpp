@@ -40,7 +40,8 @@ std::vector<uint8_t> doubled_triangles(std::span<const TriangleCorners> of, size
     std::vector<uint8_t> doubled(total, 0);
     tbb::parallel_for(tbb::blocked_range<size_t>(0, vertices, 4096), [&](const auto& range) {
         for (size_t v = range.begin(); v != range.end(); ++v) {
-            const auto begin = triangles.begin() + first[v], end = triangles.begin() + first[v + 1];
+            const auto begin = triangles.begin() + first[v];
+            const auto end = triangles.begin() + first[v + 1];
             std::sort(begin, end, [](const BucketTriangle& a, const BucketTriangle& b) {
                 return std::tie(a.middle_vertex, a.high_vertex, a.number) <
                        std::tie(b.middle_vertex, b.high_vertex, b.number);
@@ -69,9 +70,14 @@ std::vector<uint8_t> crossed_halves(std::span<const dvec3> vertices, std::span<c
         return none;
     };
     const auto is_flat_quad = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {  // in a cycle
-        const dvec3 p = vertices[a], ac = vertices[c] - p, ab = vertices[b] - p, ad = vertices[d] - p, bd = ad - ab;
+        const dvec3 p = vertices[a];
+        const dvec3 ac = vertices[c] - p;
+        const dvec3 ab = vertices[b] - p;
+        const dvec3 ad = vertices[d] - p;
+        const dvec3 bd = ad - ab;
         const dvec3 normal = cross(ac, bd);
-        const double size = length(normal), longest = max_or_second(length(ac), length(bd));
+        const double size = length(normal);
+        const double longest = max_or_second(length(ac), length(bd));
         if (!(size > 0) || magnitude(dot(normal, ab)) > 0x1p-20 * longest * size) return false;
         // The diagonals cross: each pair of corners lies on either side of the other pair's line.
         const auto side = [&](const dvec3& line, const dvec3& to) { return dot(cross(line, to), normal); };
@@ -81,9 +87,14 @@ std::vector<uint8_t> crossed_halves(std::span<const dvec3> vertices, std::span<c
     for (uint32_t h = 0; h < next.size(); ++h) {
         const uint32_t other = next[h];
         if (other <= h || next[other] != h) continue;
-        const uint32_t a = corner(h), c = corner(after(h)), b = opposite(h), d = opposite(other);
+        const uint32_t a = corner(h);
+        const uint32_t c = corner(after(h));
+        const uint32_t b = opposite(h);
+        const uint32_t d = opposite(other);
         if (b == d) continue;
-        const uint32_t third = neighbor(after(after(h)), d), fourth = neighbor(after(h), d);  // at edges ba and cb
+        // at edges ba and cb
+        const uint32_t third = neighbor(after(after(h)), d);
+        const uint32_t fourth = neighbor(after(h), d);
         if (third == none || fourth == none || std::min(third, fourth) < std::min(h, other) / 3) continue;
         if (!is_flat_quad(a, b, c, d)) continue;
         for (const uint32_t half : {third, fourth}) crossed[half] = 1;

@@ -1,4 +1,4 @@
-#include "scene/compile/meshes/edge_pairs.h"
+#include "scene/compile/meshes/mesh_edges.h"
 
 #include <algorithm>
 
@@ -108,7 +108,8 @@ class EdgePairing {
     /// triangle has no angle.
     std::vector<Wing> wings_of(const std::vector<uint32_t>& ring) const {
         const uint32_t low = std::min(vertex(ring[0]), end(ring[0]));
-        const dvec3 start = position(low), edge = position(std::max(vertex(ring[0]), end(ring[0]))) - start;
+        const dvec3 start = position(low);
+        const dvec3 edge = position(std::max(vertex(ring[0]), end(ring[0]))) - start;
         std::vector<Wing> wings;
         dvec3 u(0), v(0);
         for (const uint32_t h : ring) {

@@ -39,8 +39,10 @@ bool apart(const Box& a, const Box& b) {
 }
 
 Mask meet(const Box& box, const NeighborBlock& block) {
-    const Vectors low = block.low.all(), high = block.high.all();
-    const Vectors box_low = spread<Numbers>(box.low), box_high = spread<Numbers>(box.high);
+    const Vectors low = block.low.all();
+    const Vectors high = block.high.all();
+    const Vectors box_low = spread<Numbers>(box.low);
+    const Vectors box_high = spread<Numbers>(box.high);
     return (box_low.x <= high.x) & (low.x <= box_high.x) & (box_low.y <= high.y) & (low.y <= box_high.y) &
            (box_low.z <= high.z) & (low.z <= box_high.z);
 }
@@ -234,7 +236,8 @@ class ApexCheck {
         reach.low -= dvec3{highest};
         reach.high += dvec3{highest};
         around_.clear();
-        size_t looked_at = 0, found = 0;
+        size_t looked_at = 0;
+        size_t found = 0;
         all_around_ = !any_in_box(tree_, reach, [&](uint32_t other) {
             for (uint32_t i = groups_.first[other]; i < groups_.first[other + 1]; ++i) {
                 const auto corner = mesh_.triangle(groups_.order[i]);

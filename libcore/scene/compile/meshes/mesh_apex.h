@@ -1,9 +1,11 @@
-// Apex points that keep rays leaving a triangle off its mesh (docs/rules.md, 2): an apex over each side of every
-// triangle, so low that no part of the mesh lies between it and the triangle.
+// The triangles of a mesh in clusters of up to eight neighbors, with apex points that keep rays leaving a triangle off
+// its mesh (docs/rules.md, 2): an apex over each side of every triangle, so low that no part of the mesh lies between
+// it and the triangle. Private to libcore/scene.
 #pragma once
 
 #include <vector>
 
+#include "cistula/model/scene_view.h"
 #include "scene/compile/meshes/mesh_edges.h"
 #include "scene/compile/meshes/normalized_mesh.h"
 #include "scene/trees/tree_build.h"
@@ -35,5 +37,15 @@ struct ApexFaults {
 /// itself and is ignored. The work is bounded, however tangled the mesh is (decision 0034). Throws Error (interrupted).
 ApexFaults check_apexes(const NormalizedMesh& mesh, const Groups& groups, const Tree& tree, ApexHeights& heights,
                         StopSignal stop = {});
+
+Groups group_triangles(const NormalizedMesh& mesh, StopSignal stop = {});
+
+/// A tree over the groups' boxes, for queries during compilation; its items are group numbers.
+Tree group_tree(const NormalizedMesh& mesh, const Groups& groups);
+
+/// Appends one cluster per group. Unused lanes hold a corner of lane 0 three times.
+template <class Real>
+void append_clusters(const NormalizedMesh& mesh, const Groups& groups, const ApexHeights& heights, uint32_t solid,
+                     uint32_t first_triangle, std::vector<Cluster<Real>>& clusters);
 
 }  // namespace cistula

@@ -30,7 +30,8 @@ std::vector<uint8_t> bodies_that_meet(const std::vector<MeshPiece>& pieces) {
     if (outer.size() < 2) return meets;
     const double size = largest_component(all.high - all.low);
     const auto grown = [&](uint32_t i) {  // in units of the mesh, which floats can hold
-        const dvec3 low = (pieces[i].box.low - all.low) / size, high = (pieces[i].box.high - all.low) / size;
+        const dvec3 low = (pieces[i].box.low - all.low) / size;
+        const dvec3 high = (pieces[i].box.high - all.low) / size;
         const dvec3 width = high - low;
         const double pad = growth * min_or_second(width.x, min_or_second(width.y, width.z));
         return Box{low - dvec3(pad), high + dvec3(pad)};

@@ -30,7 +30,8 @@ MeshEdges link_edges(std::span<const TriangleCorners> triangles, size_t vertices
     for (uint32_t& f : first) sum += f, f = sum;
     std::vector<HalfEdge> edges(count);
     for (uint32_t h = count; h-- > 0;) {
-        const uint32_t a = vertex(h), b = end(h);
+        const uint32_t a = vertex(h);
+        const uint32_t b = end(h);
         edges[--first[std::min(a, b)]] = {std::max(a, b), h};
     }
 
@@ -38,7 +39,8 @@ MeshEdges link_edges(std::span<const TriangleCorners> triangles, size_t vertices
     linked.next.resize(count);
     std::atomic<uint32_t> open{0}, crowded{0};
     tbb::parallel_for(tbb::blocked_range<size_t>(0, vertices, 4096), [&](const auto& range) {
-        uint32_t open_here = 0, crowded_here = 0;
+        uint32_t open_here = 0;
+        uint32_t crowded_here = 0;
         for (size_t v = range.begin(); v != range.end(); ++v) {
             HalfEdge* const bucket_end = edges.data() + first[v + 1];
             HalfEdge* group = edges.data() + first[v];

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "cistula/numerics/vec.h"
-#include "scene/compile/meshes/edge_pairs.h"
 #include "scene/compile/meshes/mesh_edges.h"
 #include "scene/compile/meshes/piece_nesting.h"
 #include "scene/description/mesh_source.h"
@@ -70,7 +69,9 @@ class PieceSearch {
         all.corners.reserve(total);
         for (uint32_t i = 0; i < total; ++i) {
             const TriangleCorners& t = mesh_.triangles[i];
-            const uint32_t a = welded_[t[0]], b = welded_[t[1]], c = welded_[t[2]];
+            const uint32_t a = welded_[t[0]];
+            const uint32_t b = welded_[t[1]];
+            const uint32_t c = welded_[t[2]];
             if (a == no_vertex || b == no_vertex || c == no_vertex)
                 ++all.faults.not_finite;
             else if (a == b || b == c || c == a)
@@ -233,7 +234,9 @@ class PieceSearch {
             uint32_t turned = 0;
             for (const uint32_t t : piece.triangles) {
                 const TriangleCorners at = corners(selection, surface, t);
-                const dvec3 a = mesh_.vertices[at[0]], b = mesh_.vertices[at[1]], c = mesh_.vertices[at[2]];
+                const dvec3 a = mesh_.vertices[at[0]];
+                const dvec3 b = mesh_.vertices[at[1]];
+                const dvec3 c = mesh_.vertices[at[2]];
                 const double term = dot(a - origin, cross(b - origin, c - origin));
                 piece.volume += term;
                 terms += magnitude(term);

@@ -13,13 +13,18 @@ namespace cistula {
 
 /// Counts of what was found in a mesh, for warnings.
 struct MeshFaults {
-    uint32_t repeated_vertex = 0, not_finite = 0, zero_area = 0;  // triangles left out
+    // triangles left out
+    uint32_t repeated_vertex = 0;
+    uint32_t not_finite = 0;
+    uint32_t zero_area = 0;
     uint32_t doubled = 0;      // triangles left out: an earlier one, or an earlier pair, has the same corners
     uint32_t flat_pieces = 0;  // left out: they are closed, but have no volume
     uint32_t turned = 0;       // triangles that were wound unlike most of their piece
     uint32_t passing = 0;      // pieces that pass through others, so that neither contains the other
-    uint32_t open_edges = 0, crowded_edges = 0;  // that keep it from being closed: of one triangle, of more than two
-    bool one_sided = false;                      // it has no two sides, as a Klein bottle
+    // that keep it from being closed: of one triangle, of more than two
+    uint32_t open_edges = 0;
+    uint32_t crowded_edges = 0;
+    bool one_sided = false;  // it has no two sides, as a Klein bottle
 
     /// "left out 3 triangles with a repeated vertex and 1 triangle of zero area"; empty if there are none.
     std::string left_out() const;

@@ -40,8 +40,12 @@ bool passes_right(const GridPoint& a, const GridPoint& b, const GridPoint& p) {
 /// Whether a ray from a point along +x crosses a triangle.
 bool crosses(const GridPoint& a, const GridPoint& b, const GridPoint& c, const GridPoint& p) {
     if (!(passes_right(a, b, p) ^ passes_right(b, c, p) ^ passes_right(c, a, p))) return false;
-    const Wide by = b[1] - a[1], bz = b[2] - a[2], cy = c[1] - a[1], cz = c[2] - a[2], py = p[1] - a[1],
-               pz = p[2] - a[2];
+    const Wide by = b[1] - a[1];
+    const Wide bz = b[2] - a[2];
+    const Wide cy = c[1] - a[1];
+    const Wide cz = c[2] - a[2];
+    const Wide py = p[1] - a[1];
+    const Wide pz = p[2] - a[2];
     const Wide det = by * cz - bz * cy;
     if (det == 0) return false;  // seen edge on
     const Wide ahead = (b[0] - a[0]) * (py * cz - pz * cy) + (c[0] - a[0]) * (by * pz - bz * py) - (p[0] - a[0]) * det;
@@ -83,11 +87,14 @@ class RayTree {
     }
 
   private:
-    static constexpr size_t most_in_leaf = 8, least_parallel = 10'000;
+    static constexpr size_t most_in_leaf = 8;
+    static constexpr size_t least_parallel = 10'000;
 
     struct Node {
-        int64_t low[2] = {INT64_MAX, INT64_MAX}, high[2] = {INT64_MIN, INT64_MIN};  // along y and z
-        int64_t farthest = INT64_MIN;                                               // along x
+        // along y and z
+        int64_t low[2] = {INT64_MAX, INT64_MAX};
+        int64_t high[2] = {INT64_MIN, INT64_MIN};
+        int64_t farthest = INT64_MIN;  // along x
 
         bool is_missed_from(const GridPoint& p) const {
             return p[1] < low[0] || p[1] > high[0] || p[2] < low[1] || p[2] > high[1] || p[0] > farthest;
@@ -231,7 +238,9 @@ class Nesting {
         constexpr int most_halvings = 12;
         constexpr double nearest = 16;  // eight steps of the grid
         const TriangleCorners& t = triangles_[triangle];
-        const dvec3 a = as_vector(points_[t[0]]), b = as_vector(points_[t[1]]), c = as_vector(points_[t[2]]);
+        const dvec3 a = as_vector(points_[t[0]]);
+        const dvec3 b = as_vector(points_[t[1]]);
+        const dvec3 c = as_vector(points_[t[2]]);
         const dvec3 normal = cross(b - a, c - a);
         const double area = length(normal);
         if (!(area > 0)) return false;

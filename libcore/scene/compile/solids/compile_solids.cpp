@@ -29,7 +29,9 @@ std::vector<glm::dvec3> ConvexSolid::face_corners(uint32_t face) const {
     const glm::dvec3 right = corners.empty() ? glm::dvec3(0) : corners[0] - middle;
     const glm::dvec3 up = cross(face % 2 == 1 ? pair.normal : -pair.normal, right);
     const auto angle = [&](const glm::dvec3& p) {  // not in radians, but in the same order: from -2 to 2
-        const double x = dot(right, p - middle), y = dot(up, p - middle), sum = magnitude(x) + magnitude(y);
+        const double x = dot(right, p - middle);
+        const double y = dot(up, p - middle);
+        const double sum = magnitude(x) + magnitude(y);
         return x >= 0 ? y / sum : y >= 0 ? 2 - y / sum : -2 - y / sum;
     };
     std::sort(corners.begin(), corners.end(),
@@ -50,7 +52,8 @@ ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const Scene
     }
     for (const auto& planes : shape.planes) {
         const glm::dvec3 normal = rotation(planes.normal);
-        const double middle = dot(normal, center), half = radius * shape.inradius;
+        const double middle = dot(normal, center);
+        const double half = radius * shape.inradius;
         solid.planes.push_back({normal, planes.single ? -INFINITY : middle - half, middle + half});
     }
     return solid;

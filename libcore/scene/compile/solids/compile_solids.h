@@ -1,4 +1,4 @@
-// Convex solids as planes in the frame, in double. Private to libcore/scene.
+// Convex solids as planes in the frame, in double. Private to libcore/scene and libcore/render.
 #pragma once
 
 #include <cmath>
@@ -46,5 +46,25 @@ void bound_sphere(const ConvexSolid& convex, Solid& solid);
 /// Appends the groups of a solid's slabs and sets the first one.
 template <class Real>
 void group_slabs(const std::vector<Slab<Real>>& slabs, Solid& solid, std::vector<SlabGroup<Real>>& groups);
+
+/// The half-space normal.x <= offset. `face` is numbered as in hit keys: 2 slab + side.
+struct SolidPlane {
+    Vec3<double> normal;
+    double offset;
+    uint32_t face;
+};
+
+/// The half-spaces of a solid in face order. Slabs without a lower side give one.
+template <class Real>
+std::vector<SolidPlane> solid_planes(const SceneView<Real>& scene, const Solid& solid) {
+    std::vector<SolidPlane> planes;
+    for (uint32_t i = 0; i < solid.slab_count; ++i) {
+        const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
+        const Vec3<double> normal(slab.normal);
+        if (slab.low > -RealTraits<Real>::infinity) planes.push_back({-normal, -double(slab.low), 2 * i});
+        planes.push_back({normal, double(slab.high), 2 * i + 1});
+    }
+    return planes;
+}
 
 }  // namespace cistula

@@ -5,7 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include "cistula/lights/edge_lights.h"
-#include "scene/compile/meshes/convex_mesh.h"
 #include "scene/compile/scene_source.h"
 #include "scene/compile/solids/smallest_part.h"
 
@@ -74,10 +73,12 @@ void PlacedBodies::bind_slabs(ConvexSolid& solid) const {
 /// Gives a slab the normals and the offsets of the contact planes on its sides. If these have different normals, or
 /// one side cannot follow the other, the low side becomes a slab of its own, the last.
 void PlacedBodies::bind_slab(ConvexSolid& solid, uint32_t slab) const {
-    const uint32_t low = solid.face_planes[2 * slab], high = solid.face_planes[2 * slab + 1];
+    const uint32_t low = solid.face_planes[2 * slab];
+    const uint32_t high = solid.face_planes[2 * slab + 1];
     if (low == no_plane && high == no_plane) return;
     PlanePair& pair = solid.planes[slab];
-    PlanePair of_low = pair, of_high = pair;
+    PlanePair of_low = pair;
+    PlanePair of_high = pair;
     if (low != no_plane) take(of_low, contacts.planes[low], false);
     if (high != no_plane) take(of_high, contacts.planes[high], true);
     if (pair.low != -INFINITY) {

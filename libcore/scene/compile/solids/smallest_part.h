@@ -1,7 +1,8 @@
-// The least size that a scene's precision must tell apart (docs/rules.md, 12).
+// The least size that a scene's precision must tell apart (docs/rules.md, 12), and the precision that it needs.
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "scene/compile/scene_source.h"
@@ -28,5 +29,15 @@ SmallestPart smallest_part(const SceneSource& source);
 
 /// The smallest part of a scene. Opens its meshes. Throws Error as compile_scene does.
 SmallestPart smallest_part(const SceneDescription& description);
+
+/// A precision and what is to be said about it; empty texts: nothing.
+struct PrecisionChoice {
+    Precision precision = Precision::single_;
+    std::string note;     // why `auto` is double
+    std::string warning;  // why the precision does not hold
+};
+
+/// The wanted precision; without one, float unless the scene's smallest part is too small for it.
+PrecisionChoice choose_precision(const std::optional<Precision>& wanted, const SmallestPart& part);
 
 }  // namespace cistula

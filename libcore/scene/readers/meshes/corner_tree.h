@@ -44,7 +44,9 @@ class CornerTree {
     /// Children of node n are 2 n + 1 and 2 n + 2.
     struct Node {
         glm::dvec2 low, high;
-        uint32_t first = 0, end = 0, left = 0;
+        uint32_t first = 0;
+        uint32_t end = 0;
+        uint32_t left = 0;
     };
     void build(uint32_t number, uint32_t first, uint32_t end);
 

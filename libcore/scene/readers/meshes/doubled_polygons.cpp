@@ -10,9 +10,12 @@ namespace {
 /// all that begin where they agree, are no candidates.
 size_t least_start(const std::vector<uint32_t>& corners) {
     const size_t n = corners.size();
-    size_t a = 0, b = 1, same = 0;
+    size_t a = 0;
+    size_t b = 1;
+    size_t same = 0;
     while (a < n && b < n && same < n) {
-        const uint32_t at_a = corners[(a + same) % n], at_b = corners[(b + same) % n];
+        const uint32_t at_a = corners[(a + same) % n];
+        const uint32_t at_b = corners[(b + same) % n];
         if (at_a == at_b) {
             ++same;
             continue;
@@ -53,7 +56,8 @@ std::vector<bool> doubled_polygons(std::span<const glm::dvec3> vertices, const P
     }
     const auto corners_of = [&](uint32_t n) { return std::span(corners).subspan(first[n], mesh.polygon(n).size()); };
     const auto compare = [&](uint32_t a, uint32_t b) {
-        const auto p = corners_of(a), q = corners_of(b);
+        const auto p = corners_of(a);
+        const auto q = corners_of(b);
         return std::lexicographical_compare_three_way(p.begin(), p.end(), q.begin(), q.end());
     };
     std::stable_sort(compared.begin(), compared.end(), [&](uint32_t a, uint32_t b) { return compare(a, b) < 0; });

@@ -8,9 +8,8 @@
 #include "base/file_bytes.h"
 #include "cistula/numerics/vec.h"
 #include "scene/description/rotation.h"
+#include "scene/readers/meshes/mesh_formats.h"
 #include "scene/readers/meshes/mesh_text.h"
-#include "scene/readers/meshes/obj_file.h"
-#include "scene/readers/meshes/ply_file.h"
 #include "scene/readers/meshes/polygon.h"
 
 namespace cistula {
@@ -23,7 +22,7 @@ constexpr size_t mesh_start_bytes = 4096;  // that tell what a file is, before t
 /// The bytes of an OBJ or an MTL file. Throws if they do not begin as text does.
 std::string text_bytes(const std::string& path, const std::string& label) {
     if (utf8_of(read_file_start(path, mesh_start_bytes)).find('\0') != std::string::npos)
-        throw Error(ExitCode::file, label + ": is no text, as OBJ and MTL files are: a zero byte is among its first");
+        throw Error(ErrorKind::file, "is no text, as OBJ and MTL files are: a zero byte is among its first").at(label);
     return read_file(path);
 }
 
@@ -137,10 +136,10 @@ MeshData mesh_data(std::vector<PolygonMesh> groups) {
 MeshData read_mesh(const std::string& file) {
     const std::string kind = lower_extension(file);
     const std::string label = "mesh " + file;
-    if (kind != ".ply" && kind != ".obj") throw Error(ExitCode::file, label + ": must be a .ply or an .obj file");
+    if (kind != ".ply" && kind != ".obj") throw Error(ErrorKind::file, "", "must be a .ply or an .obj file").at(label);
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error))
-        throw Error(ExitCode::file, label + ": cannot be read: there is no such file; check the path");
+        throw Error(ErrorKind::file, "cannot be read: there is no such file", "check the path").at(label);
 
     std::vector<PolygonMesh> groups;
     std::vector<std::string> warnings, files = {file};
@@ -153,7 +152,7 @@ MeshData read_mesh(const std::string& file) {
             groups.push_back(read_ply(bytes, label, warnings));
     }
     if (std::none_of(groups.begin(), groups.end(), has_faces))
-        throw Error(ExitCode::file, label + ": has no faces; give a file with polygons");
+        throw Error(ErrorKind::file, "has no faces", "give a file with polygons").at(label);
     MeshData data = mesh_data(std::move(groups));
     data.warnings = std::move(warnings);
     data.files = std::move(files);

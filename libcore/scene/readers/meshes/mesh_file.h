@@ -21,7 +21,7 @@ struct MeshPart {
 /// What was read of a mesh file, whose v counts from the bottom of the picture, as a mesh.
 MeshData mesh_data(std::vector<PolygonMesh> groups);
 
-/// Reads a mesh file: groups in file order, with a polygon at least. Throws Error(ExitCode::file) that names it.
+/// Reads a mesh file: groups in file order, with a polygon at least. Throws Error (file) that names it.
 MeshData read_mesh(const std::string& file);
 
 /// The triangles of a mesh, in file order, rotated, scaled and translated. Polygons that are there twice and groups

@@ -31,12 +31,14 @@ std::string utf8_of_utf16(std::string_view bytes, bool big_endian) {
     constexpr uint32_t unknown = 0xfffd;
     const auto unit = [&](size_t i) -> uint32_t {
         if (i + 1 >= bytes.size()) return unknown;
-        const auto first = static_cast<uint8_t>(bytes[i]), second = static_cast<uint8_t>(bytes[i + 1]);
+        const auto first = static_cast<uint8_t>(bytes[i]);
+        const auto second = static_cast<uint8_t>(bytes[i + 1]);
         return static_cast<uint32_t>(big_endian ? first << 8 | second : second << 8 | first);
     };
     std::string text;
     for (size_t i = 0; i < bytes.size(); i += 2) {
-        const uint32_t code = unit(i), low = unit(i + 2);
+        const uint32_t code = unit(i);
+        const uint32_t low = unit(i + 2);
         const bool pair = code >= 0xd800 && code < 0xdc00 && low >= 0xdc00 && low < 0xe000;
         append_utf8(text, pair ? 0x10000 + ((code - 0xd800) << 10) + (low - 0xdc00) : code);
         if (pair) i += 2;
@@ -72,7 +74,8 @@ void split_words(std::string_view line, std::vector<std::string_view>& words) {
 
 std::string_view MeshTextLines::physical_line() {
     ++line_;
-    const size_t first = at_, end = std::min(text_.find_first_of("\r\n", at_), text_.size());
+    const size_t first = at_;
+    const size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
     at_ = end + (text_.substr(end, 2) == "\r\n" ? 2 : 1);
     std::string_view line = text_.substr(first, end - first);
     for (size_t mark = line.find('#'); mark != std::string_view::npos; mark = line.find('#', mark + 1))

@@ -1,4 +1,4 @@
-#include "scene/readers/meshes/mtl_file.h"
+#include "scene/readers/meshes/mesh_formats.h"
 
 #include <algorithm>
 #include <cmath>
@@ -96,8 +96,8 @@ class MtlReader {
     }
 
   private:
-    [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ExitCode::file, fmt::format("{}:{}: {}", label_, lines_.line(), what));
+    [[noreturn]] void fail(const std::string& problem, const char* remedy = "") const {
+        throw Error(ErrorKind::file, problem, remedy).at(fmt::format("{}:{}", label_, lines_.line()));
     }
 
     void read_statement(std::string_view key) {
@@ -106,7 +106,7 @@ class MtlReader {
         constexpr std::string_view others[] = {"Kd", "Ks", "Ka", "Ke", "Tf", "Ns", "Ni", "d", "Tr", "illum"};
         const bool known = map || std::find(std::begin(others), std::end(others), key) != std::end(others);
         if (known && !material_)
-            fail(fmt::format("{} before the first newmtl; a material begins with newmtl", quoted(key)));
+            fail(fmt::format("{} before the first newmtl", quoted(key)), "a material begins with newmtl");
         if (map) return read_map(key);
         if (!known) return library_.ignored.add(key);
         if (key == "Kd") read_color(key, material_->Kd);

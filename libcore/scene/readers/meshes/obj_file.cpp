@@ -1,4 +1,4 @@
-#include "scene/readers/meshes/obj_file.h"
+#include "scene/readers/meshes/mesh_formats.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "scene/readers/meshes/mesh_text.h"
-#include "scene/readers/meshes/mtl_file.h"
 
 namespace cistula {
 namespace {
@@ -55,7 +54,7 @@ class ObjReader {
   private:
     [[noreturn]] void fail(const std::string& what) const { fail_at(lines_.line(), what); }
     [[noreturn]] void fail_at(int line, const std::string& what) const {
-        throw Error(ExitCode::file, fmt::format("{}:{}: {}", label_, line, what));
+        throw Error(ErrorKind::file, what).at(fmt::format("{}:{}", label_, line));
     }
 
     void read_statement(std::string_view key) {
@@ -199,7 +198,8 @@ class ObjReader {
     std::vector<dvec2> uvs_;
     LargestIndex largest_vertex_, largest_uv_;
     std::string name_, material_;  // of the faces that follow
-    bool in_group_ = false, starts_with_name_ = false;
+    bool in_group_ = false;
+    bool starts_with_name_ = false;
     std::vector<Group> groups_;
     std::vector<std::string> library_lines_;
     std::set<std::string> seen_libraries_;

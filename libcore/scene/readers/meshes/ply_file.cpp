@@ -1,4 +1,4 @@
-#include "scene/readers/meshes/ply_file.h"
+#include "scene/readers/meshes/mesh_formats.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,12 +89,12 @@ class PlyReader {
 
   private:
     /// Throws Error with the line, or in binary data the byte, that was read last.
-    [[noreturn]] void fail(const std::string& what) const {
-        if (ascii_) fail_at(line_, what);
-        throw Error(ExitCode::file, fmt::format("{}: byte {}: {}", label_, value_at_, what));
+    [[noreturn]] void fail(const std::string& problem, const std::string& remedy = {}) const {
+        if (ascii_) fail_at(line_, problem, remedy);
+        throw Error(ErrorKind::file, problem, remedy).at(fmt::format("{}: byte {}", label_, value_at_));
     }
-    [[noreturn]] void fail_at(int line, const std::string& what) const {
-        throw Error(ExitCode::file, fmt::format("{}:{}: {}", label_, line, what));
+    [[noreturn]] void fail_at(int line, const std::string& problem, const std::string& remedy = {}) const {
+        throw Error(ErrorKind::file, problem, remedy).at(fmt::format("{}:{}", label_, line));
     }
 
     /// Goes to the words of the next line; false at the end of the file.
@@ -206,7 +206,7 @@ class PlyReader {
         if (!number) fail("expected a number, found " + quoted(word));
         if (type.is_integer() && !(*number >= type.least && *number <= type.most && *number == std::floor(*number)))
             fail(fmt::format("expected a whole number from {} to {}, found {}", type.least, type.most, quoted(word)));
-        if (is_float) fail(quoted(word) + " is more than a float holds; declare the property as double");
+        if (is_float) fail(quoted(word) + " is more than a float holds", "declare the property as double");
         return *number;
     }
 
@@ -237,7 +237,7 @@ class PlyReader {
                 list(p, values);
             }
             if (ascii_ && word_ < words_.size())
-                fail(fmt::format("found {} values; expected {}", words_.size(), word_));
+                fail(fmt::format("found {} values", words_.size()), fmt::format("expected {}", word_));
             end();
         }
     }
@@ -272,8 +272,8 @@ class PlyReader {
     }
 
     void read_polygons() {
-        const size_t list = element_->find({"vertex_indices", "vertex_index"}, true),
-                     uv_list = element_->find({"texcoord"}, true);
+        const size_t list = element_->find({"vertex_indices", "vertex_index"}, true);
+        const size_t uv_list = element_->find({"texcoord"}, true);
         if (element_->count == 0) return;
         if (list == element_->properties.size() || !element_->properties[list].type->is_integer())
             fail_at(element_->line, "element " + element_->name + " has no list vertex_indices of an integer type");
@@ -292,7 +292,7 @@ class PlyReader {
                 fail(fmt::format("names vertex {}, but there are {}, numbered from 0", corner, vertices_));
         if (strips) return add_strips(corners);
         if (!uvs.empty() && uvs.size() != 2 * corners.size())
-            fail(fmt::format("{} values of texcoord for {} corners; give two a corner", uvs.size(), corners.size()));
+            fail(fmt::format("{} values of texcoord for {} corners", uvs.size(), corners.size()), "give two a corner");
         if (!uvs.empty()) mesh_.corner_uvs.resize(mesh_.corners.size());
         for (size_t i = 0; i < uvs.size(); i += 2) add_uv(mesh_.corner_uvs, uvs[i], uvs[i + 1]);
         mesh_.corners.insert(mesh_.corners.end(), corners.begin(), corners.end());
@@ -306,7 +306,9 @@ class PlyReader {
             if (corners[i] < 0) first = i + 1;
             if (i < first + 2) continue;
             const bool turned = (i - first) % 2 == 1;
-            const double a = corners[i - (turned ? 1 : 2)], b = corners[i - (turned ? 2 : 1)], c = corners[i];
+            const double a = corners[i - (turned ? 1 : 2)];
+            const double b = corners[i - (turned ? 2 : 1)];
+            const double c = corners[i];
             if (a == b || b == c || c == a) continue;
             for (const double corner : {a, b, c}) mesh_.corners.push_back(static_cast<uint32_t>(corner));
             mesh_.ends.push_back(mesh_.corners.size());
@@ -316,8 +318,11 @@ class PlyReader {
     std::string_view bytes_;
     const std::string& label_;
     char line_end_ = '\n';
-    bool ascii_ = true, big_endian_ = false;
-    size_t at_ = 0, value_at_ = 0;  // the next byte, and the first of the value read last
+    bool ascii_ = true;
+    bool big_endian_ = false;
+    // the next byte, and the first of the value read last
+    size_t at_ = 0;
+    size_t value_at_ = 0;
     int line_ = 0;
     std::vector<std::string_view> words_;
     size_t word_ = 0;                                            // the next of `words_`

@@ -1,10 +1,14 @@
 #include "scene/readers/meshes/polygon.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <queue>
 
 #include "cistula/numerics/vec.h"
+#include "scene/description/coordinate_rounding.h"
 #include "scene/readers/meshes/corner_tree.h"
+#include "scene/readers/scene_keys.h"
 
 namespace cistula {
 namespace {
@@ -54,7 +58,8 @@ class EarClipper {
                 ear = next_ear();
             }
             const uint32_t i = ear == none ? state_[first_].after : ear;
-            const uint32_t before = state_[i].before, after = state_[i].after;
+            const uint32_t before = state_[i].before;
+            const uint32_t after = state_[i].after;
             triangles.push_back({corners_[before], corners_[i], corners_[after]});
             state_[before].after = after;
             state_[after].before = before;
@@ -72,9 +77,11 @@ class EarClipper {
     static constexpr uint32_t none = UINT32_MAX;
 
     struct Corner {
-        uint32_t before = 0, after = 0;
+        uint32_t before = 0;
+        uint32_t after = 0;
         uint32_t version = 0;  // counts tests: of the entries in the queue the last one holds
-        bool removed = false, convex = false;
+        bool removed = false;
+        bool convex = false;
     };
     struct Ear {
         double order;
@@ -88,7 +95,8 @@ class EarClipper {
     std::vector<dvec2> points_in_plane() const {
         const dvec3 n = normalized(normal_);
         const dvec3 off = magnitude(n.x) < 0.6 ? dvec3{1, 0, 0} : dvec3{0, 1, 0};
-        const dvec3 u = normalized(cross(n, off)), v = cross(n, u);
+        const dvec3 u = normalized(cross(n, off));
+        const dvec3 v = cross(n, u);
         std::vector<dvec2> points;
         points.reserve(corners_.size());
         for (const uint32_t corner : corners_) {
@@ -136,10 +144,14 @@ class EarClipper {
 
     /// Whether another corner lies in the triangle that corner i spans with its neighbors.
     bool is_blocked(uint32_t i) const {
-        const uint32_t before = state_[i].before, after = state_[i].after;
+        const uint32_t before = state_[i].before;
+        const uint32_t after = state_[i].after;
         const dvec3 &a = at(before), &b = at(i), &c = at(after);
-        const dvec2 pa = in_plane_[before], pb = in_plane_[i], pc = in_plane_[after];
-        const dvec2 low = min_of(pa, min_of(pb, pc)), high = max_of(pa, max_of(pb, pc));
+        const dvec2 pa = in_plane_[before];
+        const dvec2 pb = in_plane_[i];
+        const dvec2 pc = in_plane_[after];
+        const dvec2 low = min_of(pa, min_of(pb, pc));
+        const dvec2 high = max_of(pa, max_of(pb, pc));
         // Boxes are compared with slack for rounding; only `turn` decides.
         const dvec2 slack = (max_of(high, -low) + (high - low)) * 0x1p-40;
         const auto touches = [&](const dvec2& box_low, const dvec2& box_high) {
@@ -192,6 +204,42 @@ void append_polygon(std::span<const dvec3> vertices, std::span<const uint32_t> c
     if (corners.size() > 3 && is_finite(normal) && is_finite(dot(normal, normal)) && dot(normal, normal) > 0)
         return EarClipper(vertices, corners, normal).clip(triangles);
     for (size_t i = 1; i + 1 < corners.size(); ++i) triangles.push_back({corners[0], corners[i], corners[i + 1]});
+}
+
+std::optional<std::string> quad_problem(const std::array<glm::dvec3, 4>& corners) {
+    const glm::dvec3 first = corners[2] - corners[0];
+    const glm::dvec3 second = corners[3] - corners[1];
+    const double diagonal = max_or_second(length(first), length(second));
+    if (!(diagonal > 0)) return "the four corners of the quad coincide";
+    // Twice a quad's area is the length of the cross product of its diagonals.
+    const glm::dvec3 a = first / diagonal;
+    const glm::dvec3 b = second / diagonal;
+    const glm::dvec3 product = cross(a, b);
+    if (!(length(product) > quad_tolerance))
+        return "the quad has no area or crosses itself; give the corners in order around it";
+    const glm::dvec3 normal = normalized(product);
+    const double distance = magnitude(dot(normal, (corners[1] - corners[0]) / diagonal));
+    const glm::dvec3 rounding = coordinate_rounding(corners).half_unit / diagonal;
+    const double written = dot(glm::dvec3(magnitude(normal.x), magnitude(normal.y), magnitude(normal.z)), rounding);
+    if (distance > max_or_second(quad_tolerance, 2 * written))
+        return fmt::format(
+            "the quad is not planar: its diagonals pass at {:.2g} of their length, at most {} is allowed", distance,
+            number_text(quad_tolerance));
+    for (size_t i = 0; i < 4; ++i) {
+        const glm::dvec3 in = (corners[i] - corners[(i + 3) % 4]) / diagonal;
+        const glm::dvec3 out = (corners[(i + 1) % 4] - corners[i]) / diagonal;
+        if (!(dot(normal, cross(in, out)) > quad_tolerance))
+            return fmt::format("the quad is not convex at corner {}; give the corners in order around it", i);
+    }
+    return std::nullopt;
+}
+
+TrianglesObject quad_triangles(const std::array<glm::dvec3, 4>& corners) {
+    TrianglesObject quad;
+    quad.vertices.assign(corners.begin(), corners.end());
+    quad.triangles = {{0, 1, 2}, {0, 2, 3}};
+    quad.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    return quad;
 }
 
 }  // namespace cistula

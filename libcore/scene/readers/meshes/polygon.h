@@ -1,13 +1,16 @@
-// Polygons in space: their triangulation, and which are there more than once.
+// Polygons in space: their triangulation, that of quads, and which are there more than once.
 #pragma once
-
-#include <array>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 #include <glm/vec3.hpp>
 
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/description/description.h"
 #include "scene/readers/meshes/polygon_mesh.h"
 
 namespace cistula {
@@ -27,5 +30,15 @@ void append_polygon(std::span<const glm::dvec3> vertices, std::span<const uint32
 /// order or in its reverse; corners at equal positions are the same. Polygons with fewer than four corners, or one that
 /// is not finite, never count: find_pieces compares triangles.
 std::vector<bool> doubled_polygons(std::span<const glm::dvec3> vertices, const PolygonMesh& mesh);
+
+/// Tolerance for a quad's planarity and convexity, relative to its longer diagonal.
+inline constexpr double quad_tolerance = 1e-6;
+
+/// An error text unless the corners make a planar and strictly convex quad.
+std::optional<std::string> quad_problem(const std::array<glm::dvec3, 4>& corners);
+
+/// Triangles (0, 1, 2) and (0, 2, 3). The corners' uv are (0, 0), (1, 0), (1, 1), (0, 1), so a texture's top row runs
+/// from the first corner to the second.
+TrianglesObject quad_triangles(const std::array<glm::dvec3, 4>& corners);
 
 }  // namespace cistula

@@ -1,0 +1,40 @@
+#include "verify/case.h"
+
+namespace cistula::verify {
+
+void add_contact(Cases& cases);
+void add_digits(Cases& cases);
+void add_geometry(Cases& cases);
+void add_metamorphic(Cases& cases);
+void add_mirrors(Cases& cases);
+void add_overlap(Cases& cases);
+void add_pieces(Cases& cases);
+void add_refraction(Cases& cases);
+void add_shadows(Cases& cases);
+void add_size(Cases& cases);
+void add_sums(Cases& cases);
+
+const std::vector<Case>& all_cases() {
+    static const std::vector<Case> all = [] {
+        Cases cases;
+        const auto add = [&](const char* group, void (*cases_of)(Cases&)) {
+            cases.group = group;
+            cases_of(cases);
+        };
+        add("contact/", add_contact);
+        add("digits/", add_digits);
+        add("geometry/", add_geometry);
+        add("metamorphic/", add_metamorphic);
+        add("mirrors/", add_mirrors);
+        add("overlap/", add_overlap);
+        add("pieces/", add_pieces);
+        add("refraction/", add_refraction);
+        add("shadows/", add_shadows);
+        add("size/", add_size);
+        add("sums/", add_sums);
+        return cases.all;
+    }();
+    return all;
+}
+
+}  // namespace cistula::verify

@@ -1,0 +1,141 @@
+"""What happens to a library inside Python: signals, threads, forks, callbacks that raise."""
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cistula
+
+SOURCE = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def scene() -> cistula.Scene:
+    return cistula.Scene.load(SOURCE / "scenes" / "platonic.json")
+
+
+def test_progress_is_told(scene: cistula.Scene) -> None:
+    told: list[float] = []
+    scene.render(size=(480, 270), progress=told.append)
+    assert told == sorted(told) and told[-1] == 1 and all(0 <= share <= 1 for share in told)
+
+
+def test_what_a_callback_raises_ends_the_render_and_comes_out(scene: cistula.Scene) -> None:
+    def enough(share: float) -> None:
+        raise LookupError("enough")
+
+    begin = time.monotonic()
+    with pytest.raises(LookupError, match="enough"):
+        scene.render(size=(7680, 4320), depth=64, progress=enough)
+    assert time.monotonic() - begin < 30  # all of it takes minutes
+
+
+def interrupted(code: str) -> str:
+    """What a process says that gets a SIGINT half a second after it printed a line."""
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, cwd=SOURCE)
+    assert process.stdout is not None
+    process.stdout.readline()
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    return process.communicate(timeout=60)[0]
+
+
+END = "\nexcept KeyboardInterrupt: print('stopped')\nelse: print('went on')"
+
+
+def test_ctrl_c_stops_a_render() -> None:
+    code = "import cistula\ns = cistula.Scene.load('scenes/infinity.json')\nprint(1, flush=True)\ntry: s.render(size=(7680, 4320), depth=64)" + END
+    assert interrupted(code) == "stopped\n"
+
+
+def test_ctrl_c_stops_a_compilation() -> None:
+    code = """import cistula, numpy as np
+n = 1500
+x, y = np.meshgrid(np.arange(n), np.arange(n))
+points = np.stack([x, y, np.sin(x) + np.cos(1.7 * y)], axis=-1).reshape(-1, 3)
+i = (y[:-1, :-1] * n + x[:-1, :-1]).ravel()
+faces = np.concatenate([np.stack([i, i + 1, i + n], 1), np.stack([i + 1, i + n + 1, i + n], 1)])
+b = cistula.SceneBuilder({'materials': {'m': {}}}).mesh('m', points, faces, material='m')
+print(1, flush=True)
+try: b.build()""" + END
+    assert interrupted(code) == "stopped\n"
+
+
+def test_other_threads_go_on_while_a_frame_renders(scene: cistula.Scene) -> None:
+    counted = 0
+    stop = False
+
+    def count() -> None:
+        nonlocal counted
+        while not stop:
+            counted += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    scene.render(size=(640, 360))
+    stop = True
+    thread.join()
+    assert counted > 10
+
+
+def in_threads(number: int, work: Callable[[], object]) -> list[object]:
+    results: list[object] = []
+    threads = [threading.Thread(target=lambda: results.append(work())) for _ in range(number)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return results
+
+
+def test_threads_share_scenes(scene: cistula.Scene) -> None:
+    whole = scene.render(size=(96, 54)).hash
+    assert in_threads(4, lambda: scene.render(size=(96, 54)).hash) == 4 * [whole]
+    assert in_threads(3, lambda: cistula.Scene.load(scene.source).render(size=(96, 54)).hash) == 3 * [whole]
+    distances = scene.intersect([0, 0, 9], np.random.default_rng(2).normal(size=(999, 3))).distance.tobytes()
+    assert in_threads(3, lambda: scene.intersect([0, 0, 9], np.random.default_rng(2).normal(size=(999, 3))).distance.tobytes()) == 3 * [distances]
+
+
+def child(queue: multiprocessing.Queue[str]) -> None:
+    try:
+        queue.put(cistula.Scene.load(SOURCE / "scenes" / "platonic.json").render(size=(64, 36)).hash)
+    except RuntimeError as error:
+        queue.put(str(error))
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_a_fork_after_use_says_so_and_a_spawned_process_works(scene: cistula.Scene) -> None:
+    whole = scene.render(size=(64, 36)).hash
+    for way, expected in (("fork", "spawn"), ("spawn", whole)):
+        context = multiprocessing.get_context(way)
+        queue = context.Queue()
+        process = context.Process(target=child, args=(queue,))  # type: ignore[attr-defined]
+        process.start()
+        assert expected in queue.get(timeout=60)
+        process.join()
+
+
+def test_a_fork_before_use_works() -> None:
+    code = """import cistula, os
+pid = os.fork()
+print(cistula.Scene.load('scenes/platonic.json').render(size=(64, 36)).hash, flush=True)
+if pid: os.waitpid(pid, 0)"""
+    lines = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=SOURCE, timeout=60).stdout.split()
+    assert len(lines) == 2 and lines[0] == lines[1]
+
+
+def test_importing_starts_nothing() -> None:
+    code = "import os, cistula; print(len(os.listdir('/proc/self/task')))"
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment).stdout == "1\n"

@@ -1,0 +1,127 @@
+"""Scenes of dicts and arrays, and what is said where they or arguments are wrong."""
+from __future__ import annotations
+
+import json
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cistula
+from cistula._processor import lacking
+
+CUBE = {"name": "cube", "solid": "cube", "material": "clay"}
+SCENE: dict[str, Any] = {"film": {"width": 32, "height": 24}, "materials": {"clay": {"color": [0.8, 0.5, 0.3]}}, "objects": [CUBE],
+                         "lights": [{"position": [4, -5, 6]}]}
+CORNERS = np.array([[-1, -1, -1], [1, -1, -1], [0, 1, -1], [0, 0, 1]], float)
+FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+
+
+def test_a_dict_is_its_json(tmp_path: Path) -> None:
+    (tmp_path / "scene.json").write_text(json.dumps(SCENE))
+    ours = cistula.Scene.from_dict({**SCENE, "lights": [{"position": np.array([4, -5, 6])}]})
+    assert ours.hash == cistula.Scene.load(tmp_path / "scene.json").hash
+    assert (ours.objects, ours.materials, ours.size, ours.frames, ours.precision) == (["cube"], ["clay"], (32, 24), 1, "float")
+    assert "diffuse" in ours.effects() and "clay" in repr(ours.materials)
+
+
+def test_arrays_give_what_files_of_the_same_numbers_give(tmp_path: Path) -> None:
+    lines = ["v " + " ".join(map(str, v)) for v in CORNERS] + ["f " + " ".join(str(i + 1) for i in f) for f in FACES]
+    (tmp_path / "tetrahedron.obj").write_text("\n".join(lines))
+    file = {**SCENE, "objects": [CUBE, {"name": "t", "mesh": "tetrahedron.obj", "material": "clay", "center": [3, 0, 0]}]}
+    built = cistula.SceneBuilder(SCENE).mesh("t", CORNERS, FACES, material="clay", center=(3, 0, 0)).build()
+    assert built.objects == ["cube", "t"]
+    assert built.render().hash == cistula.Scene.from_dict(file, folder=tmp_path).render().hash
+
+
+def test_textures_are_arrays() -> None:
+    def with_texture(array: Any, **keys: object) -> np.ndarray[Any, Any]:
+        scene = {**SCENE, "materials": {"floor": {"texture": "t"}}, "objects": [], "ambient": 1, "camera": {"position": [0, 0, 3],
+                 "up": [0, 1, 0]}}
+        quad = np.array([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]])
+        b = cistula.SceneBuilder(scene).texture("t", array, **keys)
+        b.mesh("floor", quad, [[0, 1, 2], [0, 2, 3]], uvs=[[0, 1], [1, 1], [1, 0], [0, 0]], material="floor")
+        return b.build().render(size=(8, 6)).rgb()
+
+    gray = np.full((2, 2), 128, np.uint8)
+    assert np.array_equal(with_texture(gray), with_texture(np.repeat(gray[..., None], 3, axis=2)))
+    assert with_texture(gray, colorspace="linear").mean() > 2 * with_texture(gray).mean()
+    half = np.full((2, 2, 3), 0.5)
+    assert np.array_equal(with_texture(half), with_texture(half.astype(np.float32)))
+    corner = np.zeros((2, 2, 3))
+    corner[0, 0] = 1  # the top left of the picture
+    seen = with_texture(corner, filter="nearest")[..., 0] > 0.1
+    assert seen[:3, :4].all() and not seen[3:].any() and not seen[:, 4:].any()
+
+
+def test_a_wrong_scene_is_told_by_its_pointer() -> None:
+    with pytest.raises(cistula.SceneError) as error:
+        cistula.Scene.from_dict({**SCENE, "objects": [{**CUBE, "solid": "cubee"}]})
+    assert error.value.pointer == "/objects/0/solid" and "did you mean 'cube'" in str(error.value)
+    with pytest.raises(cistula.SceneError, match="nan") as error:
+        cistula.Scene.from_dict({**SCENE, "lights": [{"position": [0, float("nan"), 0]}]})
+    assert error.value.pointer == "/lights/0/position/1"
+    assert isinstance(error.value, ValueError) and pickle.loads(pickle.dumps(error.value)).pointer == error.value.pointer
+    with pytest.raises(cistula.SceneError) as error:
+        cistula.SceneBuilder(SCENE).mesh("t", CORNERS, FACES, material="clya").build()
+    assert error.value.pointer == "/objects/1/material"
+
+
+def test_files_that_are_wrong(tmp_path: Path) -> None:
+    with pytest.raises(cistula.FileError, match="nothing.json") as error:
+        cistula.Scene.load("/nothing.json")
+    assert isinstance(error.value, OSError)
+    (tmp_path / "scene.json").write_text('{"depth": 4,}')
+    with pytest.raises(cistula.SceneError, match=r"scene.json:1:\d+"):
+        cistula.Scene.load(tmp_path / "scene.json")
+
+
+@pytest.mark.parametrize("call,message", [
+    (lambda s: s.render(depth=5000), "depth=5000: must be a whole number from 1 to 1024"),
+    (lambda s: s.render(depth=2.5), "depth=2.5: must be a whole number"),
+    (lambda s: s.render(size=(0, 3)), "size=0x3: must be WIDTHxHEIGHT"),
+    (lambda s: s.render(crop=(10, 10, 500, 0)), "crop 10x10[+]500[+]0: leaves the frame, which is 32x24"),
+    (lambda s: s.render(layers="ID"), "layers=ID: there is no layer 'ID'; the layers are: id"),
+    (lambda s: s.render(max_samples=9), "max_samples 9: is for target_error"),
+    (lambda s: s.render(target_error=0.1, cutoff=0.1), "target_error 0.1: cutoff has no place here"),
+    (lambda s: s.render(bits="hlaf"), "bits=hlaf: must be float or half; did you mean 'half'"),
+    (lambda s: s.render(devices=[1]), "devices=1: "),
+    (lambda s: s.render(frame=-1), "frame=-1: must be 0 or more"),
+    (lambda s: s.pixel(32, 0), "x=32, y=0: is outside of the frame, which is 32x24"),
+    (lambda s: s.intersect([0, 0], [1, 0]), "origins: must be N x 3 numbers"),
+    (lambda s: s.intersect(np.zeros((2, 3)), np.ones((3, 3))), "directions: has 3 rows, origins 2"),
+    (lambda s: s.intersect([0, 0, 5], [[0, 0, 1], [0, 0, 0]]), "ray 1: needs"),
+    (lambda s: cistula.SceneBuilder(SCENE).mesh("m", CORNERS, [[0, 1, 4]], material="clay"), "triangles: must be 0 to 3"),
+    (lambda s: cistula.SceneBuilder(SCENE).mesh("m", CORNERS, [[0, 1, 0.5]], material="clay"), "triangles: must be M x 3 whole"),
+    (lambda s: cistula.SceneBuilder(SCENE).texture("t", np.zeros((2, 2), int)), "array: must be H x W"),
+    (lambda s: cistula.Scene.from_dict(SCENE, precision="half"), "precision=half: must be auto or float or double"),
+])
+def test_arguments_are_named_with_what_would_be_right(call: Callable[[cistula.Scene], object], message: str) -> None:
+    with pytest.raises(cistula.ArgumentError, match=message):
+        call(cistula.Scene.from_dict(SCENE))
+
+
+def test_an_unknown_argument_is_a_type_error() -> None:
+    with pytest.raises(TypeError, match="no argument 'dpeth'; did you mean 'depth'"):
+        cistula.Scene.from_dict(SCENE).render(dpeth=3)  # type: ignore[call-arg]
+
+
+@pytest.mark.skipif("cuda" in cistula.backends(), reason="built with CUDA")
+def test_a_backend_that_is_not_there() -> None:
+    with pytest.raises(cistula.DeviceError, match="no CUDA backend"):
+        cistula.Scene.from_dict(SCENE).render(backend="cuda")
+
+
+def test_remarks_on_scenes_are_warnings() -> None:
+    tiny = {"name": "tiny", "solid": "cube", "radius": 1e-6, "center": [3, 0, 0], "material": "clay"}
+    with pytest.warns(UserWarning, match="double"):
+        scene = cistula.Scene.from_dict({**SCENE, "objects": [CUBE, tiny]})
+    assert scene.precision == "double" and len(scene.warnings) == 1
+
+
+def test_an_old_processor_is_told_by_what_it_lacks() -> None:
+    assert lacking("flags\t\t: fpu avx avx2 fma bmi1 bmi2 f16c movbe abm") == []
+    assert lacking("flags\t\t: fpu avx fma bmi1 bmi2 f16c movbe abm") == ["AVX2"]
