@@ -1,5 +1,7 @@
 """A tracer written from docs/shading-model.md alone, which shows that the page says all: many rays at once, in NumPy, without trees.
 Its scenes have Platonic solids, closed convex triangle lists and quads, no two faces of which lie in one plane."""
+# mypy: ignore-errors
+# It is read beside the page, whose formulas have no types.
 import json
 import math
 from itertools import product

@@ -23,7 +23,8 @@ def test_an_unknown_command_is_named_with_those_that_there_are() -> None:
 
 def test_a_checkout_runs_the_commands_without_the_native_module(source: Path) -> None:
     def answer(*arguments: str) -> "subprocess.CompletedProcess[str]":
-        return subprocess.run([sys.executable, *arguments], env={"PYTHONPATH": str(source / "python")}, capture_output=True, text=True)
+        return subprocess.run([sys.executable, *arguments], env={"PYTHONPATH": str(source / "python")}, cwd=source,
+                              capture_output=True, text=True)
     for name in ("view", "farm"):
         assert answer("-m", "cistula", name, "--help").returncode == 0
     missing = answer("-c", "import cistula; cistula.Scene")

@@ -1,4 +1,5 @@
 """docs/shading-model.md says all: the tracer that was written from it gives the pixels that render gives."""
+# mypy: ignore-errors
 import json
 import subprocess
 from pathlib import Path
