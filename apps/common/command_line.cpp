@@ -49,8 +49,13 @@ void open_standard_streams() {
     for (const std::string& extra : app.remaining()) {
         if (extra.size() < 2 || extra[0] != '-') fail_usage(extra_positional(extra));
         const std::vector<std::string> names = long_names(app);
+        const std::string name = extra.substr(0, extra.find('='));
+        const std::string key(scene_key_of_option(name));
+        const auto has = [&](const std::string& option) { return std::ranges::count(names, option) > 0; };
+        if (!key.empty() && has("--res") && !has("--" + key))  // of a program that renders scenes
+            fail_usage(fmt::format("{}: no such option; the scene file says it, as '{}'", extra, key));
         fail_usage(fmt::format("{}: no such option; {}; --help lists them", extra,
-                               suggestion(extra.substr(0, extra.find('=')), {names.begin(), names.end()}, "options")));
+                               suggestion(name, {names.begin(), names.end()}, "options")));
     }
     fail_usage("the command line cannot be read; --help shows its form");
 }
@@ -119,6 +124,10 @@ bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
         if (app.get_help_ptr()->count() > 0) return false;
         throw;
     } catch (const CLI::ParseError& error) {
+        for (const CLI::Option* option : app.get_options())
+            if (option->count() > 1 && option->get_expected_max() == 1)
+                fail_usage(fmt::format("{}: given {} times, as {} and {}; give it once", option->get_name(),
+                                       option->count(), option->results()[0], option->results()[1]));
         fail_usage(fmt::format("{}; --help shows the options", error.what()));
     }
     if (!app.remaining().empty()) fail_unexpected(app, extra_positional);

@@ -62,9 +62,10 @@ std::string explain_table(const std::string& scene, const Explanation& explanati
         table += fmt::format(row, effect_names[std::countr_zero(reason.effect)], reason.needed ? "yes" : "no",
                              (mask & reason.effect) != 0 ? "in" : "left out", cost_of(reason.effect),
                              one_line(reason.because));
-    table += fmt::format("\nMask {} of {} runs. Left out: {}. In without need: {}; never a bit of the image.\n",
-                         chosen - first + 1, effect_mask_count - first, list_of(all_effects & ~mask),
-                         list_of(mask & ~required));
+    table += fmt::format(
+        "\nOf the {} sets of effects for which code is compiled, number {} runs, the least that has all that are "
+        "needed. Left out: {}. In without need: {}; that changes no bit of the image.\n",
+        effect_mask_count - first, chosen - first + 1, list_of(all_effects & ~mask), list_of(mask & ~required));
     for (const std::string& overlap : explanation.overlaps) table += overlap + '\n';
     if (costs)
         table += fmt::format(

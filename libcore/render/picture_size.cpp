@@ -15,7 +15,7 @@ namespace {
 std::optional<PictureSize> take_size(std::string_view& text) {
     const size_t x = text.find('x');
     if (x == text.npos) return std::nullopt;
-    const size_t end = std::min(text.find('+', x), text.size());
+    const size_t end = std::min(text.find_first_of("+-", x), text.size());
     const auto width = whole_number<int>(text.substr(0, x));
     const auto height = whole_number<int>(text.substr(x + 1, end - x - 1));
     if (!width || !height || *width < 1 || *height < 1 || *width > largest_side || *height > largest_side)
@@ -38,12 +38,12 @@ PixelRect parse_crop(std::string_view text) {
     std::string_view rest = text;
     const std::optional<PictureSize> size = take_size(rest);
     if (size && !rest.empty()) {
-        rest.remove_prefix(1);
-        const size_t plus = rest.find('+');
-        if (plus != rest.npos) {
-            const auto x = whole_number<int>(rest.substr(0, plus));
-            const auto y = whole_number<int>(rest.substr(plus + 1));
-            if (x && y && *x >= 0 && *y >= 0) return {*x, *y, size->width, size->height};
+        const size_t second = rest.find_first_of("+-", 1);
+        const auto number = [](std::string_view part) { return whole_number<int>(part.substr(part.starts_with('+'))); };
+        if (second != rest.npos) {
+            const auto x = number(rest.substr(0, second));
+            const auto y = number(rest.substr(second));
+            if (x && y && rest.find("+-") == rest.npos) return {*x, *y, size->width, size->height};
         }
     }
     fail_usage("", "must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96");

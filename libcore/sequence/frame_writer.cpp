@@ -179,7 +179,7 @@ void FrameWriter::write(Task& task) {
     if (raw || !frame.preview.empty()) {
         ColorPicture color, preview;
         stats.encode_seconds = seconds_of([&] {
-            color = to_color(frame.film);
+            color = to_color(frame.film, channels_.transparent);
             if (frame.preview.empty()) return;
             preview = viewed(raw ? color : std::move(color), frame.view, static_cast<uint32_t>(frame.film.full_height));
         });

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iterator>
 #include <numeric>
+#include <regex>
 #include <set>
 
 #include "base/error.h"
@@ -17,6 +18,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int most_digits = 32;
+constexpr size_t longest_name = 255;  // of a file, by the system; std::regex recurses
+
+/// The place of the frame number as other programs write it, or "".
+std::string other_pattern(std::string_view text) {
+    static const std::regex pattern(R"(\$F[0-9]*(?![A-Za-z_])|@@+|[<{](frame|FRAME)[^<>{}]*[>}]|<[fF][0-9]*>)");
+    std::cmatch found;
+    const std::string_view file = text.substr(text.find_last_of('/') + 1).substr(0, longest_name);
+    return std::regex_search(file.data(), file.data() + file.size(), found, pattern) ? found.str() : "";
+}
 
 /// Creates the directory of a file.
 void make_directory(const std::string& path) {
@@ -35,10 +45,15 @@ void make_directory(const std::string& path) {
 }  // namespace
 
 OutputName::OutputName(std::string_view text, std::string_view option) : text_(text) {
-    const auto fail = [&](const std::string& problem, const char* remedy = "") {
+    const auto fail = [&](const std::string& problem, const std::string& remedy = "") {
         throw Error(ErrorKind::usage, fmt::format("{} {}: {}", option, text, problem), remedy);
     };
     if (text.empty()) throw Error(ErrorKind::usage, fmt::format("{}: the file name is empty", option));
+    if (const std::string other = other_pattern(text); !other.empty()) {
+        std::string right(text);
+        right.replace(right.rfind(other), other.size(), "####");
+        fail(other + " is no place for the frame number here", "#### or %04d is, as in " + right);
+    }
     std::string* part = &prefix_;
     const auto place = [&](int digits) {
         if (has_pattern()) fail("two places for the frame number", "a name has one, #### or %04d");

@@ -164,10 +164,7 @@ std::vector<RequestKey> make_keys() {
         other(
             "crop", {"WxH+X+Y", "render these pixels only; the file's data window", of_suite},
             [](Request& r, const std::string& crop) { r.frame.crop = parse_crop(crop); },
-            [](const Request& r) {
-                const PixelRect& c = r.frame.crop;
-                return c.width == 0 ? "" : fmt::format("{}x{}+{}+{}", c.width, c.height, c.x, c.y);
-            }),
+            [](const Request& r) { return r.frame.crop.width == 0 ? "" : format_rect(r.frame.crop); }),
         other(
             "tiles", {"CxR", "with `tile`: the grid of tiles that the frame, or the crop, is cut into"},
             [](Request& r, const std::string& grid) { r.tiles = parse_tiles(grid); },
@@ -372,9 +369,10 @@ FrameSettings frame_settings(const RenderRequest& request, const SceneDescriptio
     settings.parts = parts_for(request.channels);
     PixelRect& crop = settings.crop;
     if (crop.width == 0) crop = {0, 0, settings.full_width, settings.full_height};
-    if (crop.x > settings.full_width - crop.width || crop.y > settings.full_height - crop.height)
-        fail_usage(fmt::format("`crop` {}x{}+{}+{}: leaves the frame, which is {}x{}", crop.width, crop.height, crop.x,
-                               crop.y, settings.full_width, settings.full_height));
+    if (crop.x < 0 || crop.y < 0 || crop.x > settings.full_width - crop.width ||
+        crop.y > settings.full_height - crop.height)
+        fail_usage(fmt::format("`crop` {}: leaves the frame, which is {}x{}", format_rect(crop), settings.full_width,
+                               settings.full_height));
     if (request.tile) crop = tile_rect(crop, request.tiles.value_or(TileGrid()), *request.tile);
     return settings;
 }

@@ -205,7 +205,7 @@ TEST(RequiredEffects, LightsOnEdgesAndFalloff) {
 TEST(RequiredEffects, LightsOnFaces) {
     SceneDescription scene = lit_cube();
     EXPECT_FALSE(effects_of(scene) & effect_lights_on_faces);
-    EXPECT_EQ(because(scene, effect_lights_on_faces), "no lamp lies on a face");
+    EXPECT_EQ(because(scene, effect_lights_on_faces), "no light with a color lies on a face or edge");
     EdgeLights& on_edges = std::get<SolidObject>(scene.objects[0].shape).edge_lights;
     on_edges.count = 1;
     EXPECT_TRUE(effects_of(scene) & effect_lights_on_faces);

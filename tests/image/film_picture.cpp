@@ -133,6 +133,10 @@ TEST(FilmPicture, BackgroundsAreOpaqueOrTransparent) {
     expect("A", 0.5f, 0);
     expect("coverage", 0.5f, 0);
     expect("Z", 4, infinity);
+    const ColorPicture shown = to_color(film, true);  // of what was hit, not premultiplied
+    EXPECT_EQ(shown.texels, (std::vector<glm::vec3>{glm::vec3(0.5f), glm::vec3(0)}));
+    EXPECT_EQ(shown.alpha, (std::vector<float>{0.5f, 0}));
+    EXPECT_TRUE(to_color(film).alpha.empty());
 }
 
 TEST(FilmPicture, ColorsAreThoseOfTheSpace) {

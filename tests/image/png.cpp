@@ -28,6 +28,13 @@ TEST(Png, HoldsTheNearestCodes) {
     EXPECT_EQ(png, encode_png(picture));
 }
 
+TEST(Png, HoldsAlpha) {
+    ColorPicture picture{3, 1, {{0, 0.5f, 1}, {1, 1, 1}, {0, 0, 0}}};
+    picture.alpha = {1, 0.5f, 0};
+    EXPECT_EQ(decoded(encode_png(picture), 3, 1),
+              (std::vector<uint8_t>{0, 188, 255, 255, 255, 255, 255, 128, 0, 0, 0, 0}));
+}
+
 /// Nothing of the machine, the time, or what a version of libpng adds.
 TEST(Png, HasNoChunksButThoseOfThePicture) {
     const auto chunks = [](const std::string& png) {

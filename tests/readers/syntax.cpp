@@ -182,6 +182,27 @@ TEST(Suggest, NamesInAnotherCaseOrWithoutTheirEndAreNear) {
         EXPECT_EQ(suggested(far), "known values: srgb, linear, lin_ap0_scene, lin_ap1_scene") << far;
 }
 
+TEST(Suggest, WhatOtherProgramsCallAThingIsThatThingFirst) {
+    const std::vector<std::string_view> options = {"--tile", "--res", "--depth", "--target-error", "--supersample"};
+    const std::pair<const char*, const char*> of_options[] = {
+        {"--size", "--res"},        {"--width", "--res"},
+        {"--spp", "--supersample"}, {"--samples", "--supersample"},
+        {"--max-depth", "--depth"}, {"--max_depth", "--depth"}};
+    for (const auto& [other, ours] : of_options)
+        EXPECT_EQ(suggestion(other, options, "options"), "did you mean '" + std::string(ours) + "'?");
+    const std::vector<std::string_view> keys = {"position", "target", "exponent",
+                                                "index",    "color",  "frames_per_second"};
+    const std::pair<const char*, const char*> of_keys[] = {{"ior", "index"},       {"shininess", "exponent"},
+                                                           {"intensity", "color"}, {"lookat", "target"},
+                                                           {"lookAt", "target"},   {"fps", "frames_per_second"}};
+    for (const auto& [other, ours] : of_keys)
+        EXPECT_EQ(suggestion(other, keys, "keys"), "did you mean '" + std::string(ours) + "'?");
+    EXPECT_EQ(nearest_first("normal", {"diffuse", "N", "Z"}, "layers").rfind("the layers are: N, ", 0), 0u);
+    EXPECT_EQ(nearest_first("depth", {"depth_ray", "N", "Z"}, "layers").rfind("the layers are: Z, depth_ray", 0), 0u);
+    EXPECT_EQ(scene_key_of_option("--fps"), "frames_per_second");
+    EXPECT_EQ(scene_key_of_option("--normal"), "");
+}
+
 TEST(Suggest, HugeNamesAndManyNamesStayShort) {
     std::vector<std::string> names;
     for (int i = 0; i < 100; ++i) names.push_back("material_number_" + std::to_string(i));

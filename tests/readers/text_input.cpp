@@ -56,7 +56,8 @@ TEST(TextInput, TemplateIsReadWhole) {
     EXPECT_EQ(numbers(scene.camera.target_path.value()),
               (std::vector{3.0, 0.0, 3.1415926, 1.5, 0.5, 0.03, 0.07, 0.02, 0.0, 0.0}));
     ASSERT_EQ(scene.textures.size(), 1u);
-    EXPECT_EQ(scene.textures[0].file, "floor.data");
+    EXPECT_TRUE(scene.textures[0].is_checker());
+    EXPECT_EQ(read_input(changed("checker", "./checker")).textures[0].file, "./checker");
     EXPECT_FALSE(scene.frame);
 }
 
@@ -64,7 +65,7 @@ TEST(TextInput, TheExampleIsTheTemplateForTheRepository) {
     const SceneDescription scene = read_input(bytes_of((source_root() / "scenes/input.txt").string()));
     EXPECT_TRUE(std::filesystem::exists(source_root() / scene.textures.at(0).file));
     EXPECT_EQ(scene.film.output, "out/frames/frame%d.out");
-    const std::string same = changed("floor.data\nframes/", "scenes/floor.data\nout/frames/");
+    const std::string same = changed("checker\nframes/", "scenes/floor.data\nout/frames/");
     EXPECT_EQ(SceneDump::of(scene), SceneDump::of(read_input(same)));
 }
 
@@ -106,7 +107,7 @@ TEST(TextInput, EqualsTheJsonSceneButForItsCamera) {
     SceneDescription json = read_scene((source_root() / "scenes/seed.json").string());
     EXPECT_EQ(std::filesystem::path(json.textures.at(0).file), source_root() / "scenes/floor.data");
     json.textures[0].file = "floor.data";
-    const SceneDescription text = read_input(text_input_template());
+    const SceneDescription text = read_input(changed("checker", "floor.data"));
     json.camera = text.camera;
     EXPECT_EQ(SceneDump::of(text), SceneDump::of(json));
 }
@@ -308,7 +309,7 @@ TEST(TextInput, TheOrderOfTheAssignmentIsToldByTheSecondLine) {
     EXPECT_WRONG_INPUT(changed_assignment("%d", "%d%d"),
                        "2: expected an output pattern with one %d, found 'out/%d%d.data'");
     EXPECT_WRONG_INPUT(changed_assignment("%d", "100%"), "3: expected an output pattern with one %d, found '64'");
-    EXPECT_EQ(read_input(changed("floor.data", "100%.data")).textures[0].file, "100%.data");
+    EXPECT_EQ(read_input(changed("checker", "100%.data")).textures[0].file, "100%.data");
 }
 
 TEST(TextInput, InTheOrderOfTheAssignmentTimeRunsOnceAround) {

@@ -23,6 +23,7 @@ struct ColorPicture {
     uint32_t width = 0;
     uint32_t height = 0;
     std::vector<glm::vec3> texels;
+    std::vector<float> alpha = {};  // of texels that are not premultiplied; empty: all are opaque
 };
 
 /// A fraction, as EXR headers give frame rates.

@@ -33,15 +33,18 @@ void write_preview(const std::string& path, const ColorPicture& linear) {
 }
 
 std::string encode_png(const ColorPicture& linear) {
+    const bool opaque = linear.alpha.empty();
     std::vector<uint8_t> pixels;
-    pixels.reserve(3 * linear.texels.size());
-    for (const glm::vec3& texel : linear.texels)
-        for (int c = 0; c < 3; ++c) pixels.push_back(srgb8_from_linear(texel[c]));
+    pixels.reserve(4 * linear.texels.size());
+    for (size_t i = 0; i < linear.texels.size(); ++i) {
+        for (int c = 0; c < 3; ++c) pixels.push_back(srgb8_from_linear(linear.texels[i][c]));
+        if (!opaque) pixels.push_back(static_cast<uint8_t>(255 * linear.alpha[i] + 0.5f));
+    }
     png_image image = {};
     image.version = PNG_IMAGE_VERSION;
     image.width = linear.width;
     image.height = linear.height;
-    image.format = PNG_FORMAT_RGB;
+    image.format = opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
     std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
     png_alloc_size_t size = bytes.size();
     errno = 0;

@@ -20,8 +20,8 @@ ColorPicture read_texture(const std::string& path, std::string_view encoding = {
 /// Writes an 8-bit sRGB PNG atomically, clamped to [0, 1]. Throws Error (file).
 void write_preview(const std::string& path, const ColorPicture& linear);
 
-/// An 8-bit sRGB PNG of a linear RGB picture, clamped to [0, 1]. Throws std::runtime_error with libpng's reason, for
-/// instance for pictures of 4 GiB and more.
+/// An 8-bit sRGB PNG of a linear RGB picture, clamped to [0, 1], with its alpha, if it has one. Throws
+/// std::runtime_error with libpng's reason, for instance for pictures of 4 GiB and more.
 std::string encode_png(const ColorPicture& linear);
 
 }  // namespace cistula

@@ -179,17 +179,23 @@ KeptParts parts_for(const OutputChannels& channels) {
     return {channels.error, channels.error || channels.id || channels.cost || channels.z || channels.normal};
 }
 
-ColorPicture to_color(const Film& film) {
+ColorPicture to_color(const Film& film, bool transparent) {
     check(film);
-    const FilmColors colors(film, {});
+    OutputChannels channels;
+    channels.transparent = transparent;
+    const FilmColors colors(film, channels);
     ColorPicture picture;
     picture.width = static_cast<uint32_t>(film.rect.width);
     picture.height = static_cast<uint32_t>(film.rect.height);
     picture.texels.reserve(film.pixels.size());
     for (size_t i = 0; i < film.pixels.size(); ++i) {
         const PixelRadiance& pixel = film.pixels.radiance(i);
-        picture.texels.emplace_back(colors.radiance(pixel.radiance, 0), colors.radiance(pixel.radiance, 1),
-                                    colors.radiance(pixel.radiance, 2));
+        int64_t sums[3];
+        for (int c = 0; c < 3; ++c) sums[c] = pixel.radiance[c] - colors.left_out(pixel, c);
+        picture.texels.emplace_back(colors.radiance(sums, 0), colors.radiance(sums, 1), colors.radiance(sums, 2));
+        if (!transparent) continue;
+        picture.alpha.push_back(static_cast<float>(pixel.hits) / static_cast<float>(film.samples));
+        if (pixel.hits > 0) picture.texels.back() /= picture.alpha.back();
     }
     return picture;
 }

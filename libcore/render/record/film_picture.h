@@ -101,8 +101,9 @@ LayeredPicture channels_of(const Film& film, const OutputChannels& channels, std
 /// ACES2065-1, not compressed. Takes the statement away from any other.
 void set_container_flag(LayeredPicture& picture);
 
-/// The mean radiance in the film's rectangle.
-ColorPicture to_color(const Film& film);
+/// The mean radiance in the film's rectangle; `transparent`: of the samples that hit anything, with their share as
+/// alpha.
+ColorPicture to_color(const Film& film, bool transparent = false);
 
 /// 128-bit FNV-1a of the image as 32 hexadecimal digits: over the radiance, hits and samples of every pixel, lowest
 /// byte first, in pixel order. Nothing else enters, so films with equal hashes hold the same picture.

@@ -22,7 +22,7 @@ OutputChannels parse_layers(std::string_view text, OutputChannels layers) {
     for (const auto& [name, group, wanted] : named_layers) known.push_back({name, group, &(layers.*wanted)});
     for (int layer = 0; layer < path_layer_count; ++layer)
         known.push_back({path_layer_names[layer], "path", &layers.path[layer]});
-    std::vector<std::string_view> names = {"path", "data", "cryptomatte"};
+    std::vector<std::string_view> names = {"all", "path", "data", "cryptomatte"};
     for (const Layer& layer : known) names.push_back(layer.name);
     std::vector<std::string> lights;
     for (const std::string_view name : common_light_layer_names)
@@ -38,9 +38,9 @@ OutputChannels parse_layers(std::string_view text, OutputChannels layers) {
             layers.light = found = true;
             layers.light_layers.emplace_back(name.substr(light_layer_prefix.size()));
         }
-        all_lights |= name == "light";
+        all_lights |= name == "light" || name == "all";
         for (const Layer& layer : known)
-            if (layer.name == name || layer.group == name) *layer.wanted = found = true;
+            if (layer.name == name || layer.group == name || name == "all") *layer.wanted = found = true;
         if (!found) fail_usage(fmt::format("there is no layer '{}'", name), nearest_first(name, names, "layers"));
     }
     if (all_lights) layers.light_layers.clear();

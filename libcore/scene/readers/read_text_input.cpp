@@ -134,7 +134,12 @@ void read_solid(TextTokens& tokens, const InputSolid& input, SceneDescription& s
 void add_floor_texture(std::string_view file, int line, const std::string& base_dir, SceneDescription& scene) {
     TextureDescription texture;
     texture.name = "floor";
-    texture.file = file_beside_scene(std::string(file), base_dir);
+    if (file == "checker") {
+        texture.checker = {glm::dvec3{0.8}, glm::dvec3{0.3, 0.3, 0.35}};
+        texture.repeat = glm::dvec2{5};
+    } else {
+        texture.file = file_beside_scene(std::string(file), base_dir);
+    }
     texture.place = fmt::format("line {}", line);
     scene.textures.push_back(texture);
 }
@@ -220,7 +225,7 @@ SceneDescription read_text_input(const std::string& text, const std::string& lab
 
 std::string text_input_template() {
     return R"(300
-floor.data
+checker
 frames/frame%d.out
 1280 720 120
 6.0 5.0 0.0 2.0 1.0 0.05 0.1 0.05 0.0 0.0

@@ -452,9 +452,12 @@ TEST(RenderOptions, Sizes) {
     for (const char* text :
          {"", "640", "640x", "x480", "0x480", "640x-1", "640x480x2", "640X480", "65537x1", "640x480+0+0"})
         EXPECT_ERROR(parse_size(text), ExitCode::usage, "must be WIDTHxHEIGHT, each from 1 to 65536, as in 1280x720");
-    for (const char* text : {"", "8x8", "8x8+1", "8x8+1+", "8x8-1+0", "8x8+1+-1", "8x8+1+1+1", "0x8+0+0", "8+1+1"})
+    for (const char* text :
+         {"", "8x8", "8x8+1", "8x8+1+", "8x8+-1+0", "8x8+1+-1", "8x8--1+0", "8x8-+0", "8x8+1+1+1", "0x8+0+0", "8+1+1"})
         EXPECT_ERROR(parse_crop(text), ExitCode::usage,
                      "must be WIDTHxHEIGHT+X+Y in pixels from the top left, as in 64x64+128+96");
+    for (const PixelRect& rect : {PixelRect{0, 0, 8, 9}, PixelRect{3, -4, 8, 9}, PixelRect{-3, 0, 8, 9}})
+        EXPECT_EQ(parse_crop(format_rect(rect)), rect) << format_rect(rect);  // as it is printed
 }
 
 TEST(RenderOptions, Layers) {
@@ -478,6 +481,8 @@ TEST(RenderOptions, Layers) {
     const OutputChannels data = parse_layers("data");
     EXPECT_TRUE(data.position && data.material_id && data.error && data.coverage && !data.path[0]);
     EXPECT_TRUE(parse_layers("light").light && parse_layers("specular").path[4]);
+    const OutputChannels every = parse_layers("Combined_key,all");
+    EXPECT_TRUE(every.light && every.light_layers.empty() && every.path[0] && every.error && every.light_mattes);
     const auto message_of = [](const char* text) -> std::string {
         try {
             parse_layers(text);
@@ -745,9 +750,9 @@ TEST(Explain, NamesWhatIsNeededWhatRunsAndWhatIsLeftOut) {
     const std::string table = explain_table("s.json", {reasons, {"a and b overlap"}}, Backend::cuda);
     EXPECT_NE(table.find("diffuse              yes     in        material clay\n"), std::string::npos) << table;
     EXPECT_NE(table.find("fresnel              no      left out  no reason\n"), std::string::npos) << table;
-    EXPECT_NE(table.find("Mask 1 of 5 "), std::string::npos) << table;
+    EXPECT_NE(table.find("5 sets of effects for which code is compiled, number 1 runs"), std::string::npos) << table;
     const std::string on_cpu = explain_table("s.json", {reasons, {}}, Backend::embree);
-    EXPECT_NE(on_cpu.find("Mask 1 of 3 "), std::string::npos) << on_cpu;
+    EXPECT_NE(on_cpu.find("3 sets of effects for which code is compiled, number 1 runs"), std::string::npos) << on_cpu;
     EXPECT_NE(on_cpu.find("transmission         no      in        no reason\n"), std::string::npos) << on_cpu;
     EXPECT_EQ(table.find("cost"), std::string::npos) << table;
     EXPECT_NE(table.find("\na and b overlap\n"), std::string::npos) << table;

@@ -73,6 +73,16 @@ TEST(OutputName, Errors) {
     EXPECT_ERROR(OutputName("", "-o"), ExitCode::usage, "-o: the file name is empty");
 }
 
+TEST(OutputName, PatternsOfOtherProgramsAreNamedWithTheRightOne) {
+    for (const std::string other : {"$F4", "$F", "@@@@", "<frame>", "<FRAME>", "<f4>", "{frame:04d}"})
+        EXPECT_ERROR(OutputName("$FILMS/a." + other + ".exr", "-o"), ExitCode::usage,
+                     "-o $FILMS/a." + other + ".exr: " + other +
+                         " is no place for the frame number here; #### or %04d is, as in $FILMS/a.####.exr");
+    EXPECT_THROW(OutputName(std::string(1000000, '@'), "-o"), Error);
+    for (const char* text : {"@@/a.exr", "a@b.exr", "$FILM.exr", "<free>.exr", "{a}.exr"})
+        EXPECT_EQ(named(text, 3), text);
+}
+
 TEST(OutputName, KindsByExtension) {
     EXPECT_EQ(file_kind("a.exr"), FileKind::exr);
     EXPECT_EQ(file_kind("x.out/a.EXR"), FileKind::exr);

@@ -18,6 +18,7 @@
 #include "sequence/backends.h"
 #include "testing/support/gpu.h"
 #include "testing/support/render_program.h"
+#include "testing/support/scene_dump.h"
 
 namespace cistula {
 namespace {
@@ -56,6 +57,8 @@ TEST_F(RenderProgram, PrintsWhatItIsAskedFor) {
     EXPECT_EQ(version.out, "render (Cistula) " CISTULA_VERSION "\n");
     EXPECT_EQ(sample.code, 0);
     EXPECT_NE(sample.out.find("frame%d"), std::string::npos);
+    put_bytes(file("sample.txt"), sample.out);  // and needs nothing beside it
+    expect_done({"sample.txt", "-q", "--res", "16x9", "-f", "0", "-o", "sample.exr"});
     EXPECT_EQ(help.error + version.error + sample.error, "");
 }
 
@@ -87,10 +90,15 @@ TEST_F(RenderProgram, AllEffectsWriteTheSameFile) {
 TEST_F(RenderProgram, RefusesInOneLine) {
     expect_refused({}, ExitCode::usage, "no scene is given");
     expect_refused({"s.json", "--dept", "3"}, ExitCode::usage, "did you mean '--depth'?");
+    expect_refused({"s.json", "--fps", "25"}, ExitCode::usage, "the scene file says it, as 'frames_per_second'");
+    expect_refused({"s.json", "-o", "a.exr", "-o", "b.exr"}, ExitCode::usage,
+                   "--output: given 2 times, as a.exr and b.exr; give it once");
     expect_refused({"s.json", "-o", "a.png"}, ExitCode::usage, "for a PNG add --preview");
     expect_refused({"s.json", "-o", "a.exr", "-f", "1-2"}, ExitCode::usage, "-o a.####.exr");
     expect_refused({"s.json", "-o", "a.exr", "--crop", "8x8+33+0"}, ExitCode::usage,
                    "leaves the frame, which is 40x24");
+    expect_refused({"s.json", "-o", "a.exr", "--crop", "8x8-1+0"}, ExitCode::usage,
+                   "--crop 8x8-1+0: leaves the frame, which is 40x24");
     expect_refused({"s.json", "-o", "a.out", "--layers", "id"}, ExitCode::usage, "--layers needs an .exr");
     expect_refused({"s.json", "-o", "a.out", "--resume"}, ExitCode::usage, "--resume needs an .exr");
     expect_refused({"s.json", "-o", "a.out", "--bits", "half"}, ExitCode::usage, "--bits half needs an .exr");
@@ -196,6 +204,10 @@ TEST_F(RenderProgram, Previews) {
     for (const char* name : {"p.0.png", "p.1.png", "p.2.png"})
         EXPECT_EQ(bytes_of(file(name)).substr(1, 3), "PNG") << name;
     EXPECT_FALSE(exists("p.3.png"));
+    expect_done({"s.json", "-q", "-f", "0", "-o", "t.exr", "--background", "transparent", "--preview", "t.png"});
+    const std::string png = bytes_of(file("t.png"));
+    EXPECT_EQ(png[25], 6);  // the color type: with alpha
+    EXPECT_EQ(bytes_of(file("p.0.png"))[25], 2);
 }
 
 TEST_F(RenderProgram, ViewsChangeThePreviewAlone) {
@@ -270,6 +282,17 @@ TEST_F(RenderProgram, TheExampleOfTheTextInputRuns) {
     expect_done({"-", "-q", "--res", "16x9", "-f", "0,299"}, bytes_of(file("scenes/input.txt")));
     for (const char* name : {"out/frames/frame0.out", "out/frames/frame299.out"})
         EXPECT_EQ(bytes_of(file(name)).size(), 8u + 16 * 9 * 4) << name;
+}
+
+TEST_F(RenderProgram, TheExampleOfThePageOfScenesRunsAndItsFilmCloses) {
+    const std::string page = bytes_of((source_root() / "docs/scene.md").string());
+    const size_t start = page.find("```json\n") + 8;
+    put_bytes(file("scene.json"), page.substr(start, page.find("```", start) - start));
+    for (const char* name : {"marble.data", "knot.ply"})
+        put_bytes(file(name), bytes_of((source_root() / "scenes" / name).string()));
+    expect_done({"scene.json", "-q", "--res", "32x18", "--supersample", "1", "-f", "0,100", "-o", "f.###.exr"});
+    const LayeredPicture first = read_exr(file("f.000.exr")), after = read_exr(file("f.100.exr"));
+    for (size_t i = 0; i < size_t{32} * 18; ++i) EXPECT_NEAR(channel(first, "R")[i], channel(after, "R")[i], 1e-4) << i;
 }
 
 TEST_F(RenderProgram, ACropIsTheSameRegion) {

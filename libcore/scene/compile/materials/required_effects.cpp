@@ -224,7 +224,7 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene, const s
     };
     for (const MaterialRow& row : material_rows) put(row.effect, row.premise, cause(row, uses, facts), row.otherwise);
     for (const LightRow& row : light_rows) put(row.effect, row.premise, cause(row, lights), row.otherwise);
-    put(effect_lights_on_faces, Premise::shown_light, light_on_face, "no lamp lies on a face");
+    put(effect_lights_on_faces, Premise::shown_light, light_on_face, "no light with a color lies on a face or edge");
     put(effect_contacts, Premise::none, contact, "no faces of two objects lie in one plane");
     return reasons;
 }

@@ -139,8 +139,9 @@ void warn(SceneSource& source, const SourceSolid& solid, const MeshPieces& piece
         add(counted(faults.passing, " piece passes", " pieces pass") +
             " through others of the mesh, and makes no hole in them");
     const MaterialDescription& material = source.materials[solid.material];
-    if (!pieces.closed && (material.index != 1 || largest_component(material.absorption) > 0))
-        add("is not closed (" + faults.why_not_closed() + "): its index and absorption have no effect");
+    if (!pieces.closed && (material.index != 1 || largest_component(material.absorption) > 0 || material.fresnel))
+        add("is not closed (" + faults.why_not_closed() + "): its index and absorption have no effect" +
+            (material.fresnel ? ", nor has fresnel: kr and kt hold as they are given" : ""));
 }
 
 /// Some triangles of a mesh, with the vertices that they need.
