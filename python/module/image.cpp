@@ -84,7 +84,9 @@ std::string png_of(const Image& image, const Keywords& view) {
     keywords.emplace_back("preview", "-");
     RenderRequest request = request_of(keywords, {"preview", "exposure", "view", "bloom"});
     open_config_view(request.view);
-    return encode_png(viewed(to_color(image.film), request.view, static_cast<uint32_t>(image.film.full_height)));
+    const bool transparent = image.picture.attributes.count("cistula:background") != 0;
+    return encode_png(
+        viewed(to_color(image.film, transparent), request.view, static_cast<uint32_t>(image.film.full_height)));
 }
 
 }  // namespace
