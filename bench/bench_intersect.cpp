@@ -10,6 +10,7 @@
 
 #include "backend_embree/embree/embree_tree.h"
 #include "base/error.h"
+#include "base/shown_text.h"
 #include "program.h"
 #include "render/frame/frame_view.h"
 #include "verify/scenes/generated_scene.h"
@@ -232,7 +233,7 @@ void check_agreement() {
 
 void measure_memory(benchmark::State& state, const std::string& precision) {
     for (auto _ : state) {
-        const std::string self = quoted(std::filesystem::read_symlink("/proc/self/exe").string());
+        const std::string self = shell_word(std::filesystem::read_symlink("/proc/self/exe").string());
         const auto measured = [&](const std::string& what) { return std::stod(output_of(self + " --memory " + what)); };
         const double bytes = measured(precision);
         state.counters["bytes_per_triangle"] = bytes / double(triangles_of(setting->scene));

@@ -13,6 +13,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/shown_text.h"
 #include "image/exr/exr.h"
 #include "povray_scene.h"
 #include "program.h"
@@ -51,17 +52,17 @@ double povray_trace_seconds(const std::string& log) {
 }
 
 double run_povray(const Work& work, int threads) {
-    return povray_trace_seconds(
-        output_of(fmt::format("povray {} {} +FE +W{} +H{} +WT{} -A -D -V", quoted("+I" + work.povray_scene.string()),
-                              quoted("+O" + work.povray_image.string()), width, height, threads)));
+    return povray_trace_seconds(output_of(
+        fmt::format("povray {} {} +FE +W{} +H{} +WT{} -A -D -V", shell_word("+I" + work.povray_scene.string()),
+                    shell_word("+O" + work.povray_image.string()), width, height, threads)));
 }
 
 nlohmann::json run_cistula(const Work& work, int threads) {
-    output_of(
-        fmt::format("{} {} -o {} --res {}x{} --depth {} --cutoff 0 --supersample 1 --threads {} --stats {} "
-                    "--progress none -q",
-                    quoted(CISTULA_BIN_DIR "/render"), quoted(work.scene), quoted(work.image), width, height,
-                    work.depth, threads, quoted(work.stats)));
+    output_of(fmt::format(
+        "{} {} -o {} --res {}x{} --depth {} --cutoff 0 --supersample 1 --threads {} --stats {} "
+        "--progress none -q",
+        shell_word(CISTULA_BIN_DIR "/render"), shell_word(work.scene.string()), shell_word(work.image.string()), width,
+        height, work.depth, threads, shell_word(work.stats.string())));
     const nlohmann::json stats = nlohmann::json::parse(std::ifstream(work.stats));
     for (const auto& entry : stats.at("benchmarks"))
         if (entry.contains("render_ms")) return entry;

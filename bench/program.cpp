@@ -26,12 +26,6 @@ std::string output_of(const std::string& command) {
     throw Error(ErrorKind::failed, command + " failed: " + (line == text.npos ? text : text.substr(line + 1)));
 }
 
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return result + "'";
-}
-
 double peak_memory() {
     return std::stod(table_value("/proc/self/status", "VmHWM")) * 1024;
 }

@@ -19,9 +19,6 @@ int run_program(int argc, char** argv, int repetitions,
 /// it does not exit with 0.
 std::string output_of(const std::string& command);
 
-/// One argument of the shell.
-std::string quoted(const std::string& text);
-
 /// Largest resident set of this process so far, in bytes (VmHWM).
 double peak_memory();
 

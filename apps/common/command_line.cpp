@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "base/atomic_file.h"
 #include "base/file_bytes.h"
 #include "base/stages.h"
 #include "base/suggest.h"
@@ -141,6 +142,13 @@ bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
 void print(const std::string& text) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
         throw file_error("standard output", "write", errno);
+}
+
+void write_output(const std::string& path, const std::string& text) {
+    if (path == "-")
+        print(text);
+    else if (!path.empty())
+        write_file_atomically(path, text);
 }
 
 void note(const std::string& line) {

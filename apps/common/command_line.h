@@ -91,6 +91,9 @@ bool parse_command_line(CLI::App& app, int argc, const char* const* argv,
 /// Writes to standard output. Throws Error (file).
 void print(const std::string& text);
 
+/// Writes a text to a file, whole or not at all; "-": to standard output; "": nowhere. Throws Error (file).
+void write_output(const std::string& path, const std::string& text);
+
 /// Writes a line to standard error, settings in it as options. A failure changes nothing: what is said there never
 /// decides about files.
 void note(const std::string& line);

@@ -14,7 +14,6 @@
 #include "apps/common/sequence_progress.h"
 #include "apps/common/step_progress.h"
 #include "backend_embree/embree/embree_renderer.h"
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/stages.h"
 #include "explain.h"
@@ -56,6 +55,14 @@ class SceneTalk : public SequenceEvents {
   private:
     const bool quiet_;
 };
+
+/// The precision of a scene, of which is warned here where no compilation will.
+Precision warned_precision(const RenderRequest& request, const SceneSource& source) {
+    SceneTalk talk(request);
+    const PrecisionChoice choice = told_precision(request, source, talk);
+    if (!choice.warning.empty()) talk.warning(choice.warning);
+    return choice.precision;
+}
 
 /// What is advised when memory runs out.
 std::string advice_on_memory(const RenderRequest& request, const FrameSettings& settings) {
@@ -119,19 +126,14 @@ void render_scene(const RenderRequest& request, std::string& memory_advice) {
     const UserSignal user_signal(snapshots);
     RenderProgress progress;  // must outlive the guard
     ToldSequence told(request, progress, memory_advice);
-    const size_t threads = static_cast<size_t>(threads_of(request));
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    set_exr_threads(static_cast<int>(threads));
-    render_sequence(request, told, progress, &snapshots);
+    on_threads(request, [&] { render_sequence(request, told, progress, &snapshots); });
 }
 
 void explain(const RenderRequest& request) {
     const SceneDescription scene = read_scene(request);
     SceneSource source = gather_scene(scene);
-    SceneTalk talk(request);
-    PrecisionChoice choice = told_precision(request, source, talk);
-    if (!choice.warning.empty()) talk.warning(choice.warning);
-    print(explain_table(scene.source, explain_scene(std::move(source), choice.precision), request.backend));
+    const Precision precision = warned_precision(request, source);
+    print(explain_table(scene.source, explain_scene(std::move(source), precision), request.backend));
 }
 
 void measure_scene(const RenderRequest& request) {
@@ -144,10 +146,7 @@ void measure_scene(const RenderRequest& request) {
     on_threads(request, [&] {
         const StopSignal stop(progress.render.stop);
         SceneSource source = gather_scene(scene, stop);
-        SceneTalk talk(request);
-        const PrecisionChoice choice = told_precision(request, source, talk);
-        if (!choice.warning.empty()) talk.warning(choice.warning);
-        const Precision precision = choice.precision;
+        const Precision precision = warned_precision(request, source);
         const Explanation explanation = explain_scene(std::move(source), precision);
         const auto make = [&](const SceneDescription& of) {
             return make_renderer(request.backend, Scene(of, precision, stop), devices.options);
@@ -175,10 +174,7 @@ void report_pixel(const RenderCommand& request, const SceneDescription& descript
                              scene.hashes().of(camera.frame),
                              flaws};
     if (request.json != "-") print(pixel_text(report, request.verbose));
-    if (request.json == "-")
-        print(pixel_json(report));
-    else if (!request.json.empty())
-        write_file_atomically(request.json, pixel_json(report));
+    if (!request.json.empty()) write_output(request.json, pixel_json(report));
     if (!flaws.empty())
         throw Error(ErrorKind::failed, fmt::format("{}: pixel {},{} cannot be trusted: {}", description.source,
                                                    request.pixel.x, request.pixel.y, flaws));

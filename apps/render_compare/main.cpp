@@ -11,7 +11,6 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/file_bytes.h"
 #include "base/shown_text.h"
@@ -122,10 +121,7 @@ bool compare_images(const CompareOptions& options) {
     const Judged judged =
         names_several(options.a) ? judge_several(options, stop) : judge_files(options, options.a, options.b, stop);
     const std::string json = judged.json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-    if (options.json == "-")
-        print(json);
-    else if (!options.json.empty())
-        write_file_atomically(options.json, json);
+    write_output(options.json, json);
     if (!options.quiet && options.json != "-") print(judged.text);
     return judged.holds;
 }

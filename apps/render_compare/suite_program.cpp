@@ -29,16 +29,10 @@ void probe(const std::string& path) {
 
 void write_reports(const Suite& suite, const std::vector<SuiteResult>& results,
                    const std::vector<SuiteBackend>& backends, const SuiteCounts& counts, const SuiteOptions& options) {
-    const auto write = [](const std::string& path, const std::string& text) {
-        if (path == "-")
-            print(text);
-        else
-            write_file_atomically(path, text);
-    };
-    if (!options.junit.empty()) write(options.junit, junit_xml(suite, results));
-    if (!options.html.empty()) write(options.html, suite_page(suite, results, counts));
+    if (!options.junit.empty()) write_output(options.junit, junit_xml(suite, results));
+    if (!options.html.empty()) write_output(options.html, suite_page(suite, results, counts));
     if (!options.json.empty())
-        write(
+        write_output(
             options.json,
             suite_json(suite, results, backends, counts).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
                 "\n");

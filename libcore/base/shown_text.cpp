@@ -101,6 +101,12 @@ std::string quoted(std::string_view word) {
     return fmt::format("'{}{}'", start, is_whole ? "" : "...");
 }
 
+std::string shell_word(std::string_view text) {
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+    return word + "'";
+}
+
 std::string message_line(std::string_view message) {
     constexpr size_t part = 2000;
     std::string line = one_line(message);

@@ -33,6 +33,9 @@ inline std::string quoted(std::string& word) {
     return quoted(std::string_view(word));
 }
 
+/// One word of a shell's command line.
+std::string shell_word(std::string_view text);
+
 /// A message as a single line. Of more than 4,000 characters those in the middle are left out.
 std::string message_line(std::string_view message);
 

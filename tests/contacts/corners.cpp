@@ -50,7 +50,6 @@ TYPED_TEST_SUITE(CornerContacts, Reals);
 TYPED_TEST(CornerContacts, LinesMeetThePaneOnce) {
     using Real = TypeParam;
     using Counter = CornerCounter<Real>;
-    using Stack = BranchStack<Branch<Real>>;
     Random random(11);
     size_t lines = 0, wrong = 0;
     for (int turn = 0; turn < 1000; ++turn) {
@@ -65,20 +64,9 @@ TYPED_TEST(CornerContacts, LinesMeetThePaneOnce) {
         const SceneView<Real> view = compiled->view();
         for (int i = 0; i < 200; ++i) {
             const Ray<Real> ray = ray_into_corner(*compiled, contact, random);
-            TreeSettings settings;
-            settings.depth = 4;
-            settings.fixed_scale = 0x1p60f;
-            settings.fixed_unit = 0x1p-60f;
-            PixelRecord record{};
-            uint32_t flags = 0;
-            PixelSums<Real> sums(settings, view, record, flags);
-            PixelRays traced;
             size_t at_pane = 0, at_floor = 0;
             const Counter counter{view, pane, floor, at_pane, at_floor};
-            typename Stack::Storage storage;
-            Stack stack(storage);
-            RayTree<Real, Effects<all_effects>, Counter, Stack>(view, counter, settings.depth, sums, traced, stack)
-                .trace(ray, NothingSeen());
+            trace_tree(view, counter, ray, 4);
             if (at_floor == 0) continue;
             ++lines;
             wrong += at_pane != 1;

@@ -214,13 +214,6 @@ std::string pixel_html(const SuiteResult& result, const std::string& folder, con
     return html;
 }
 
-/// A word that a shell takes as it is.
-std::string shell_word(const std::string& text) {
-    std::string word = "'";
-    for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
-    return word + "'";
-}
-
 std::string title_of(const SuiteResult& result) {
     return result.of->name + variant_text(result);
 }

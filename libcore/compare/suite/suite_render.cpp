@@ -73,7 +73,7 @@ LayeredPicture picture_of_command(const SuiteCase& one, const std::string& folde
     std::vector<std::string> words;
     for (const std::string& word : one.command) words.push_back(filled(word, output, frame));
     const std::optional<CommandEnd> end = run_command(words, folder, temporary, stop);
-    if (!end) throw Error(ErrorKind::failed, fmt::format("{}: cannot be started; check the spelling", words[0]));
+    if (!end) throw Error(ErrorKind::failed, words[0] + ": cannot be started", "check the spelling");
     if (end->code != 0)
         throw Error(ErrorKind::failed, fmt::format("{} {}: {}", words[0],
                                                    end->code < 0 ? "was ended by a signal"
@@ -95,8 +95,8 @@ SceneDescription read_scene_of(const SuiteCase& one, const std::string& folder) 
 
 SuiteScene prepare_foreign(const SuiteCase& one, const std::string& folder, bool run_commands) {
     if (!one.command.empty() && !run_commands)
-        fail_usage(fmt::format("its command is not run: {}; `run_commands` runs commands of suites",
-                               fmt::join(one.command, " ")));
+        fail_usage(fmt::format("its command is not run: {}", fmt::join(one.command, " ")),
+                   "`run_commands` runs commands of suites");
     SuiteScene result;
     result.render = [&one, folder](int frame, RenderProgress& progress) {
         SuiteFrame rendered;

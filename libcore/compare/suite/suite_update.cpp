@@ -46,8 +46,9 @@ void require_inside(const std::string& golden, const std::string& folder) {
     const auto inside =
         std::filesystem::weakly_canonical(golden).lexically_relative(std::filesystem::weakly_canonical(folder));
     if (inside.empty() || *inside.begin() == "..")
-        fail_usage(fmt::format("{}: is outside of {}, the suite's folder, and `update` writes nothing there; move it",
-                               golden, folder));
+        fail_usage(
+            fmt::format("{}: is outside of {}, the suite's folder, and `update` writes nothing there", golden, folder),
+            "move it");
 }
 
 }  // namespace
@@ -125,10 +126,11 @@ void SuiteUpdate::write() const {
         write_file_atomically(now.path, text);
     }
     if (!changed.empty())
-        throw Error(ErrorKind::file,
-                    fmt::format("{}: was changed while its cases were rendered; the hashes of these are not recorded: "
-                                "{}; run `update` for them again",
-                                now.path, changed));
+        throw Error(
+            ErrorKind::file,
+            fmt::format("was changed while its cases were rendered; the hashes of these are not recorded: {}", changed),
+            "run `update` for them again")
+            .at(now.path);
 }
 
 }  // namespace cistula

@@ -56,6 +56,25 @@ struct NothingSeen {
     void light(const Scene&, const Light&, const Line&) const {}
 };
 
+/// Traces a ray's tree, of whose light nothing is kept. Returns its flags.
+template <class Real, class Intersector>
+uint32_t trace_tree(const SceneView<Real>& view, const Intersector& intersector, const Ray<Real>& ray, int depth) {
+    using Stack = BranchStack<Branch<Real>>;
+    TreeSettings settings;
+    settings.depth = depth;
+    settings.fixed_scale = 0x1p60f;
+    settings.fixed_unit = 0x1p-60f;
+    PixelRecord record{};
+    uint32_t flags = 0;
+    PixelSums<Real> sums(settings, view, record, flags);
+    PixelRays traced;
+    typename Stack::Storage storage;
+    Stack stack(storage);
+    RayTree<Real, Effects<all_effects>, Intersector, Stack>(view, intersector, settings.depth, sums, traced, stack)
+        .trace(ray, NothingSeen());
+    return flags;
+}
+
 /// Traces the trees of `rays` primary rays from random places.
 template <class Real>
 ContactCounts walk(const ContactScene& contact, Random& random, int rays) {
@@ -67,7 +86,6 @@ ContactCounts walk(const ContactScene& contact, Random& random, int rays) {
     using Checked = CheckedIntersector<Real, Brute>;
     Checked checked(*compiled, contact.bodies, brute, counts);
     checked.target = [&] { return target_in(contact, random); };
-    using Stack = BranchStack<Branch<Real>>;
     const double factor = std::ldexp(1.0, compiled->scale);
     const double tolerance = 512 * double(RealTraits<Real>::unit) * double(compiled->extent) / factor;
     for (int i = 0; i < rays; ++i) {
@@ -89,19 +107,7 @@ ContactCounts walk(const ContactScene& contact, Random& random, int rays) {
         }
         if (!clear_of_all) continue;
         ray.direction = Vec3<Real>(normalized(target_in(contact, random) - from));
-        TreeSettings settings;
-        settings.depth = 6;
-        settings.fixed_scale = 0x1p60f;
-        settings.fixed_unit = 0x1p-60f;
-        PixelRecord record{};
-        uint32_t flags = 0;
-        PixelSums<Real> sums(settings, view, record, flags);
-        PixelRays traced;
-        typename Stack::Storage storage;
-        Stack stack(storage);
-        RayTree<Real, Effects<all_effects>, Checked, Stack>(view, checked, settings.depth, sums, traced, stack)
-            .trace(ray, NothingSeen());
-        EXPECT_EQ(flags, 0u);
+        EXPECT_EQ(trace_tree(view, checked, ray, 6), 0u);
     }
     return counts;
 }
