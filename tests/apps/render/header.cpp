@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "backend_embree/embree/embree_renderer.h"
+#include "cistula/model/effects.h"
 #include "image/exr/exr.h"
 #include "render/record/film_picture.h"
 #include "render/renderer.h"
@@ -141,6 +142,96 @@ TEST(Header, WhatChangesPixelsIsThere) {
     const Attributes attributes = attributes_of(channels);
     EXPECT_EQ(std::get<std::string>(attributes.at("cistula:background")), "transparent");
     EXPECT_EQ(std::get<double>(attributes.at("cistula:zFar")), 1000);
+}
+
+TEST(HeaderAttributes, MatricesTakePointsWhereTheCameraSeesThem) {
+    CameraDescription description;
+    description.position = {3, -5, 2};
+    description.target = {0.5, 1, 0.25};
+    description.field_of_view = 70;
+    const Camera camera = camera_at(description, 0).camera;
+    const auto transformed = [](const std::vector<float>& m, const Vec3<double>& p) {
+        std::array<double, 4> q{};
+        for (size_t c = 0; c < 4; ++c) q[c] = p.x * m[c] + p.y * m[4 + c] + p.z * m[8 + c] + m[12 + c];
+        return q;
+    };
+    const int width = 320, height = 180;
+    for (const double x : {0.5, 100.0, 319.5})
+        for (const double y : {0.5, 90.0, 150.25})
+            for (const double distance : {0.25, 6.0}) {
+                const Vec3<double> direction = camera_direction(camera, x, y, width, height);
+                const Vec3<double> point = camera.position + distance * direction;
+                const double depth = distance * dot(direction, camera.forward);
+                const auto ndc = transformed(world_to_ndc(camera, width, height), point);
+                EXPECT_NEAR(ndc[3], depth, 1e-5);
+                EXPECT_NEAR(ndc[0] / ndc[3], x / width, 2e-5);
+                EXPECT_NEAR(ndc[1] / ndc[3], y / height, 2e-5);
+                EXPECT_NEAR(ndc[2] / ndc[3], 1 - 1 / depth, 2e-5);
+                const auto seen = transformed(world_to_camera(camera), point);
+                EXPECT_NEAR(seen[0], distance * dot(direction, camera.right), 1e-5);
+                EXPECT_NEAR(seen[1], distance * dot(direction, camera.up), 1e-5);
+                EXPECT_NEAR(seen[2], depth, 1e-5);
+                EXPECT_EQ(seen[3], 1);
+            }
+}
+
+TEST(HeaderAttributes, TellImagesApart) {
+    FrameSettings settings;
+    CameraFrame camera;
+    camera.camera.position = {0, 0, 0};
+    camera.camera.forward = {0, 1, 0};
+    camera.camera.right = {1, 0, 0};
+    camera.camera.up = {0, 0, 1};
+    LayeredPicture picture;
+    picture.width = picture.display_width = 4;
+    picture.height = picture.display_height = 2;
+    picture.channels = {{"R", false, {}}, {"G", false, {}}};
+    picture.attributes = header_attributes(FrameHashes("abc"), settings, Precision::single_, camera);
+    EXPECT_TRUE(is_same_image(picture, picture));
+    const auto differs = [&](const std::function<void(LayeredPicture&)>& change) {
+        LayeredPicture other = picture;
+        change(other);
+        return !is_same_image(other, picture);
+    };
+    EXPECT_TRUE(differs([](LayeredPicture& p) { p.x = 1; }));
+    EXPECT_TRUE(differs([](LayeredPicture& p) { p.display_width = 5; }));
+    EXPECT_TRUE(differs([](LayeredPicture& p) { p.channels[0].half = true; }));
+    EXPECT_TRUE(differs([](LayeredPicture& p) { p.channels.pop_back(); }));
+    EXPECT_TRUE(differs([](LayeredPicture& p) { p.compression = Compression::dwaa; }));
+    EXPECT_FALSE(differs([](LayeredPicture& p) { std::swap(p.channels[0], p.channels[1]); }));
+    const auto attributes_differ = [&](const Attributes& attributes) {
+        return differs([&](LayeredPicture& p) { p.attributes = attributes; });
+    };
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abd"), settings, Precision::single_, camera)));
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), settings, Precision::double_, camera)));
+    FrameSettings other = settings;
+    other.cutoff = 1e-9;
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
+    other = settings;
+    other.depth = 5;
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
+    other = settings;
+    other.supersample = 2;
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
+    other = settings;
+    other.target_error = 0.01;
+    const Attributes target = header_attributes(FrameHashes("abc"), other, Precision::single_, camera);
+    EXPECT_TRUE(attributes_differ(target));
+    EXPECT_EQ(std::get<double>(target.at("cistula:targetError")), 0.01);
+    EXPECT_EQ(std::get<double>(target.at("cistula:cutoff")), 0.0025);
+    other.max_samples = 32;
+    EXPECT_EQ(std::get<int>(
+                  header_attributes(FrameHashes("abc"), other, Precision::single_, camera).at("cistula:maxSamples")),
+              32);
+    EXPECT_EQ(picture.attributes.count("cistula:targetError") + picture.attributes.count("cistula:maxSamples"), 0u);
+    CameraFrame moved = camera;
+    moved.frame = 1;
+    EXPECT_TRUE(attributes_differ(header_attributes(FrameHashes("abc"), settings, Precision::single_, moved)));
+    // What does not reach the image does not reach the header.
+    other = settings;
+    other.tile = 64;
+    other.effects = all_effects;
+    EXPECT_FALSE(attributes_differ(header_attributes(FrameHashes("abc"), other, Precision::single_, camera)));
 }
 
 }  // namespace
