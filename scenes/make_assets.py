@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the assets that the scenes use and that a formula describes: knot.ply, marble.data in the seed's format, and
-hard/torus.ply and hard/slivers.ply.
+"""Writes the assets that the scenes use and that a formula describes: knot.ply, wheel.ply and pinion.ply, marble.data in the seed's format,
+and hard/torus.ply and hard/slivers.ply.
 
 Usage: scenes/make_assets.py [FOLDER]    (default: this script's folder)
 """
@@ -77,6 +77,34 @@ def write_torus(path, around=24, across=12, radius=1.0, tube=0.45):
     write_mesh(path, vertices, triangles)
 
 
+def write_wheel(path, teeth, spokes, thickness=0.34):
+    """A toothed wheel about the z axis, its rim and spokes; its pitch radius is teeth / 12, a tooth lies along x; closed."""
+    pitch = teeth / 12
+    rim, hole = [], []
+    for i in range(teeth):
+        for radius, offset in ((pitch - 0.17, -0.32), (pitch + 0.13, -0.15), (pitch + 0.13, 0.15), (pitch - 0.17, 0.32)):
+            a = 2 * math.pi * (i + offset) / teeth
+            rim.append((radius * math.cos(a), radius * math.sin(a)))
+            hole.append(((pitch - 0.5) * math.cos(a), (pitch - 0.5) * math.sin(a)))
+    n = len(rim)
+    vertices = [(x, y, z) for z in (-thickness / 2, thickness / 2) for ring in (rim, hole) for x, y in ring]
+    triangles = []
+    for i in range(n):
+        j = (i + 1) % n
+        # rings: 0 rim below, n hole below, 2 n rim above, 3 n hole above
+        for a, b in ((0, n), (n, 3 * n), (3 * n, 2 * n), (2 * n, 0)):
+            triangles += [(a + i, b + i, b + j), (a + i, b + j, a + j)]
+    for i in range(spokes):
+        a = 2 * math.pi * (i + 0.5) / spokes
+        first = len(vertices)
+        for z in (-thickness / 4, thickness / 4):
+            for along, across in ((0.1, -0.09), (pitch - 0.4, -0.07), (pitch - 0.4, 0.07), (0.1, 0.09)):
+                vertices.append((along * math.cos(a) - across * math.sin(a), along * math.sin(a) + across * math.cos(a), z))
+        for a, b, c, d in ((3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)):
+            triangles += [(first + a, first + b, first + c), (first + a, first + c, first + d)]
+    write_mesh(path, vertices, triangles)
+
+
 def write_slivers(path, thin=2.0**-19):
     """The box [-1, 1]^3 cut along planes across its axes, whose strips are 2^20 times as long as wide; closed."""
     cuts = [-1, -0.5, -0.5 + thin, 0, thin, 0.5, 0.5 + thin, 1]
@@ -125,6 +153,8 @@ def write_marble(path, size=224):
 if __name__ == "__main__":
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
     write_knot(os.path.join(folder, "knot.ply"))
+    write_wheel(os.path.join(folder, "wheel.ply"), 24, 6)
+    write_wheel(os.path.join(folder, "pinion.ply"), 12, 3)
     os.makedirs(os.path.join(folder, "hard"), exist_ok=True)
     write_torus(os.path.join(folder, "hard", "torus.ply"))
     write_slivers(os.path.join(folder, "hard", "slivers.ply"))

@@ -26,8 +26,9 @@ enum Effect : uint32_t {
     effect_insides = 1u << 15,          // rays inside closed solids
     effect_lights_on_faces = 1u << 16,  // a point light lies on a face or an edge (docs/rules.md, 5)
     effect_contacts = 1u << 17,         // faces of several solids lie in one plane (docs/rules.md, 11)
+    effect_sky = 1u << 18,              // what rays meet that meet nothing depends on their direction
 };
-inline constexpr int effect_count = 18;
+inline constexpr int effect_count = 19;
 inline constexpr uint32_t all_effects = (1u << effect_count) - 1;
 
 /// A bit of masks whose code also fills the layers of a film (layers.h). No scene calls for it.
@@ -39,7 +40,8 @@ inline constexpr uint32_t keeps_budget = 1u << (effect_count + 1);
 inline constexpr const char* effect_names[effect_count] = {
     "texture",      "diffuse",    "specular",  "opaque-shadows", "transparent-shadows", "reflection",
     "transmission", "refraction", "fresnel",   "absorption",     "visible-lights",      "light-falloff",
-    "tint",         "solids",     "triangles", "insides",        "lights-on-faces",     "contacts"};
+    "tint",         "solids",     "triangles", "insides",        "lights-on-faces",     "contacts",
+    "sky"};
 
 /// A set of effects as a type: `if constexpr (E::has(...))` removes the code of all others.
 template <uint32_t Mask>
