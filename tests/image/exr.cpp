@@ -258,6 +258,16 @@ TEST(Exr, TruncatedFilesAreFound) {
             }
         }
     }
+    put_bytes(cut, bytes + "x");
+    EXPECT_FALSE(exr_is_complete(cut)) << "and those with more";
+    for (const Compression compression : {Compression::none, Compression::zips, Compression::piz}) {
+        LayeredPicture picture = gradient(64, 100);
+        picture.compression = compression;
+        write_exr(whole, std::vector<PicturePart>{{"a", picture}, {"b", picture}});
+        EXPECT_TRUE(exr_is_complete(whole));
+        put_bytes(cut, bytes_of(whole) + '\0');
+        EXPECT_FALSE(exr_is_complete(cut));
+    }
     EXPECT_FALSE(exr_is_complete(scratch.file("none.exr")));
     EXPECT_FALSE(exr_is_complete(scratch.file("")));
 }

@@ -40,8 +40,11 @@ LayeredPicture read_exr(const std::string& path);
 /// Reads files of one or several parts, in the order of the file.
 std::vector<PicturePart> read_exr_parts(const std::string& path);
 
-/// True for an OpenEXR file in which every chunk of pixels is present; false for anything else, also if there is no
-/// file.
+/// Reads what the headers of files say: parts without values.
+std::vector<PicturePart> read_exr_headers(const std::string& path);
+
+/// True for an OpenEXR file in which every chunk of pixels is present, and where these are lines, nothing else; false
+/// for anything else, also if there is no file.
 bool exr_is_complete(const std::string& path);
 
 /// Why a picture of a width and a height is refused; empty if it is not.
