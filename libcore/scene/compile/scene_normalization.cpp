@@ -82,6 +82,11 @@ SceneNormalization find_normalization(const SceneSource& source) {
     const double largest = box.empty() ? 0 : largest_coordinate(box, normalization.center);
     if (!is_finite(largest) || (largest > 0 && (largest < 0x1p-900 || largest > 0x1p900)))
         throw scene_error(description, "", "the scene's size is outside what doubles can hold (2^-900 to 2^900)");
+    for (const SourceSolid& solid : source.solids)
+        if (solid.platonic && solid.platonic->radius < 0x1p-50 * largest)
+            throw scene_error(description, solid.place,
+                              "so small beside the scene that double precision makes a point of it",
+                              "give it a larger radius, or bring what is far away nearer");
     if (!description.frame && largest > 0) {
         int exponent;
         std::frexp(largest, &exponent);
