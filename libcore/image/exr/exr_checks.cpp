@@ -223,7 +223,7 @@ int64_t check_before_opening(const std::string& path) {
 
 void check_claim(const Imf::Header& header, const std::string& path) {
     // Deflate packs 1,032 to 1 at most, RLE and PIZ less; DWA does so after it took one value in 64.
-    double packing = 2048;
+    double packing = 1032;
     if (header.compression() == Imf::NO_COMPRESSION) packing = 1;
     if (header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION)
         packing = 64 * 1032;
