@@ -12,12 +12,12 @@ from ._processor import require_processor
 
 require_processor()
 
-from ._core import ChannelDifference, Comparison, Hits, Image, backends, version as __version__  # noqa: E402
-from .comparison import compare  # noqa: E402
+from ._core import CaseResult, ChannelDifference, Comparison, Hits, Image, backends, version as __version__  # noqa: E402
+from .comparison import compare, verify  # noqa: E402
 from .errors import ArgumentError, DeviceError, Error, FileError, FrameError, SceneError  # noqa: E402
 from .pixel import Light, Pixel, Ray, Surface  # noqa: E402
 from .scene import Scene, SceneBuilder, Settings  # noqa: E402
 
-__all__ = ["ArgumentError", "ChannelDifference", "Comparison", "DeviceError", "Error", "FileError", "FrameError", "Hits",
+__all__ = ["ArgumentError", "CaseResult", "ChannelDifference", "Comparison", "DeviceError", "Error", "FileError", "FrameError", "Hits",
            "Image", "Light", "Pixel", "Ray", "Scene", "SceneBuilder", "SceneError", "Settings", "Surface", "__version__",
-           "backends", "compare"]
+           "backends", "compare", "verify"]

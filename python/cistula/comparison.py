@@ -1,10 +1,12 @@
-"""How two pictures differ."""
+"""How two pictures differ, and whether the renderer holds on this machine."""
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from . import _core
+from .errors import ArgumentError
+from .scene import keywords
 
 
 def compare(a: str | os.PathLike[str] | _core.Image, b: str | os.PathLike[str] | _core.Image, *, fail: float | None = None,
@@ -18,3 +20,22 @@ def compare(a: str | os.PathLike[str] | _core.Image, b: str | os.PathLike[str] |
     first, second = (one if isinstance(one, _core.Image) else os.fspath(one) for one in (a, b))
     names = [] if layers is None else layers.split(",") if isinstance(layers, str) else list(layers)
     return _core.compare(first, second, fail, failpercent, hardfail, names)
+
+
+_INTERSECTORS = ("embree", "lanes", "bvh", "brute", "cuda")
+
+
+def verify(quick: bool = False, *, cases: Sequence[str] = (), intersectors: Sequence[str] | None = None, precision: str | None = None,
+           scale: int = 1, seed: int = 0, threads: int | None = None,
+           progress: Callable[[_core.CaseResult], object] | None = None) -> list[_core.CaseResult]:
+    """Runs hard cases against closed forms on this machine, as render-verify does: `all(cistula.verify(quick=True))`.
+
+    quick: fewer rays and smaller pictures; cases: names, their beginnings, or patterns with * and ?; intersectors: "embree",
+    "lanes", "bvh", "brute", "cuda", those of the CPU by default; precision: both by default; progress: called with each result.
+    Raises ArgumentError, DeviceError.
+    """
+    for name in intersectors or ():
+        if name not in _INTERSECTORS:
+            raise ArgumentError(f"intersectors={name}: must be some of {', '.join(_INTERSECTORS)}", argument="intersectors")
+    names = None if intersectors is None else list(intersectors)
+    return _core.verify(list(cases), quick, scale, seed, names, keywords({"precision": precision, "threads": threads}), progress)

@@ -150,6 +150,7 @@ NB_MODULE(_core, m) {
     bind_pixel(m);
     bind_scene(m);
     bind_compare(m);
+    bind_verify(m);
 }
 
 }  // namespace cistula::python

@@ -1,4 +1,4 @@
-"""Rays, segments, pixels and comparisons."""
+"""Rays, segments, pixels, comparisons and the self-check."""
 from __future__ import annotations
 
 import json
@@ -107,3 +107,14 @@ def test_pictures_are_compared(scene: cistula.Scene, tmp_path: Path) -> None:
     assert cistula.compare(image, other, layers="A", fail=0) and json.loads(differ.json())
     with pytest.raises(cistula.FileError, match="none.exr"):
         cistula.compare(image, tmp_path / "none.exr")
+
+
+def test_the_renderer_checks_itself() -> None:
+    told: list[cistula.CaseResult] = []
+    results = cistula.verify(True, cases=["geometry/axis-parallel"], intersectors=["embree", "brute"], progress=told.append)
+    assert [(row.intersector, row.precision) for row in results] == [(i, p) for p in ("float", "double") for i in ("embree", "brute")]
+    assert all(results) and len(told) == 4 and all(row.tried > 0 and row.unit and not row.complaint for row in results)
+    with pytest.raises(cistula.ArgumentError, match="intersectors=embre: must be"):
+        cistula.verify(intersectors=["embre"])
+    with pytest.raises(cistula.ArgumentError, match="geometry/nothing"):
+        cistula.verify(cases=["geometry/nothing"])
