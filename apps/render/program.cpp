@@ -9,6 +9,7 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/programs.h"
 #include "apps/common/progress_record.h"
 #include "apps/common/render_options.h"
 #include "apps/common/sequence_progress.h"
@@ -237,13 +238,15 @@ void run_and_record(const RenderCommand& request, std::string& memory_advice) {
 }
 
 }  // namespace
-}  // namespace cistula
 
-int main(int argc, char** argv) {
-    using namespace cistula;
+int render_program(int argc, const char* const* argv, const std::function<void(SceneDescription&)>& described) {
     std::string memory_advice = "a smaller --res or --crop needs less";
     return run_program("render", memory_advice, [&] {
-        run_and_record(parse_options(argc, argv), memory_advice);
+        RenderCommand command = parse_options(argc, argv);
+        command.described = described;
+        run_and_record(command, memory_advice);
         return static_cast<int>(ExitCode::done);
     });
 }
+
+}  // namespace cistula
