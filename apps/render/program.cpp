@@ -9,6 +9,7 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/programs.h"
 #include "apps/common/progress_record.h"
 #include "apps/common/render_options.h"
 #include "apps/common/sequence_progress.h"
@@ -224,7 +225,7 @@ void run(const RenderCommand& request, std::string& memory_advice) {
 }
 
 /// The style of --progress in a command line that may be wrong otherwise.
-ProgressStyle style_in(int argc, char** argv) {
+ProgressStyle style_in(int argc, const char* const* argv) {
     RenderRequest request;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
@@ -238,9 +239,12 @@ ProgressStyle style_in(int argc, char** argv) {
 }
 
 /// Runs, and tells programs that read the progress of an error that ends it.
-void run_and_record(int argc, char** argv, std::string& memory_advice) {
+void run_and_record(int argc, const char* const* argv, const std::function<void(SceneDescription&)>& described,
+                    std::string& memory_advice) {
     try {
-        run(parse_options(argc, argv), memory_advice);
+        RenderCommand command = parse_options(argc, argv);
+        command.described = described;
+        run(command, memory_advice);
     } catch (const std::exception& error) {
         const Failure failure = failure_of(error, memory_advice);
         const std::string lines =
@@ -252,13 +256,13 @@ void run_and_record(int argc, char** argv, std::string& memory_advice) {
 }
 
 }  // namespace
-}  // namespace cistula
 
-int main(int argc, char** argv) {
-    using namespace cistula;
+int render_program(int argc, const char* const* argv, const std::function<void(SceneDescription&)>& described) {
     std::string memory_advice = "a smaller --res or --crop needs less";
     return run_program("render", memory_advice, [&] {
-        run_and_record(argc, argv, memory_advice);
+        run_and_record(argc, argv, described, memory_advice);
         return static_cast<int>(ExitCode::done);
     });
 }
+
+}  // namespace cistula
