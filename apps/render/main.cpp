@@ -264,13 +264,28 @@ void run(const RenderCommand& request, std::string& memory_advice) {
     }
 }
 
+/// The style of --progress in a command line that may be wrong otherwise.
+ProgressStyle style_in(int argc, char** argv) {
+    RenderRequest request;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        const std::string option = "--progress";
+        const std::string value = word == option && i + 1 < argc   ? argv[i + 1]
+                                  : word.starts_with(option + "=") ? word.substr(option.size() + 1)
+                                                                   : "";
+        if (value == "json" || value == "openjd") request_key("progress").set(request, value);
+    }
+    return request.progress;
+}
+
 /// Runs, and tells programs that read the progress of an error that ends it.
-void run_and_record(const RenderCommand& request, std::string& memory_advice) {
+void run_and_record(int argc, char** argv, std::string& memory_advice) {
     try {
-        run(request, memory_advice);
+        run(parse_options(argc, argv), memory_advice);
     } catch (const std::exception& error) {
         const Failure failure = failure_of(error, memory_advice);
-        const std::string lines = failure_record(request.progress, with_options(failure.text), exit_code(failure.kind));
+        const std::string lines =
+            failure_record(style_in(argc, argv), with_options(failure.text), exit_code(failure.kind));
         if (!lines.empty()) std::fputs((lines + "\n").c_str(), stdout);
         std::fflush(stdout);
         throw;
@@ -284,7 +299,7 @@ int main(int argc, char** argv) {
     using namespace cistula;
     std::string memory_advice = "a smaller --res or --crop needs less";
     return run_program("render", memory_advice, [&] {
-        run_and_record(parse_options(argc, argv), memory_advice);
+        run_and_record(argc, argv, memory_advice);
         return static_cast<int>(ExitCode::done);
     });
 }
