@@ -236,8 +236,8 @@ void write_explorer(const RenderCommand& request) {
             explorer.page(explorer.start(description.source, bodies, film), request.page_mb, make, stop);
         write_output(request.page, page.html);
         if (!request.quiet)
-            note(fmt::format("render: {}: {:.1f} MB, the rays of {} pixels, one in {} x {}", request.page,
-                             static_cast<double>(page.html.size()) / 1e6, page.trees, page.step, page.step));
+            note(fmt::format("render: {}: {:.2f} MB, the rays of one pixel in {} x {}", request.page,
+                             static_cast<double>(page.html.size()) / 1e6, page.step, page.step));
     });
 }
 

@@ -95,25 +95,18 @@ Explorer explorer_of(const Image& image) {
     return {image.scene->scene(), camera_at(image.scene->description().camera, image.frame), image.settings};
 }
 
-/// Explorer::start() of the image. Throws Error (usage) for a crop.
-std::string explorer_start(const Image& image, StopSignal stop) {
-    if (image.film.rect.width != image.film.full_width || image.film.rect.height != image.film.full_height)
-        throw Error(ErrorKind::usage,
-                    "the explorer shows whole frames, and this image is a crop; render it without `crop`");
-    const SceneDescription& description = image.scene->description();
-    return explorer_of(image).start(description.source, wireframes(gather_scene(description, stop)), image.film);
-}
-
 nb::object explore(Self self, const std::optional<std::string>& path, double mb) {
     const Image& image = image_of(self);
-    if (!(mb > 0)) throw Error(ErrorKind::usage, fmt::format("mb={}: must be above 0", mb));
+    const SceneDescription& description = image.scene->description();
+    if (image.film.rect.width != image.film.full_width || image.film.rect.height != image.film.full_height)
+        throw Error(ErrorKind::usage, "the explorer shows whole frames, and this is a crop; render it without `crop`");
     std::string text;
     std::atomic<bool> stop{false};
     run_interruptibly(stop, [&] {
-        text = explorer_start(image, stop);
-        if (!path) return;
+        const Explorer explorer = explorer_of(image);
+        text = explorer.start(description.source, wireframes(gather_scene(description, stop)), image.film);
         const auto make = [&] { return make_embree_renderer(image.scene->scene()); };
-        write_file_atomically(*path, explorer_of(image).page(text, mb, make, stop).html);
+        if (path) write_file_atomically(*path, explorer.page(text, mb, make, stop).html);
     });
     if (path) return nb::none();
     return nb::module_::import_("cistula.explorer").attr("widget")(self, text);

@@ -228,7 +228,7 @@ def test_the_grid_fills_the_size_and_python_writes_the_same_page(page: Path, sou
     (["--explore", "p.html", "-o", "a.exr"], "--output has no place here"),
     (["--explore", "p.html", "-f", "0-2"], "name that one"),
     (["--explore-mb", "3"], "requires --explore"),
-    (["--explore", "p.html", "--explore-mb", "0.02"], "--explore-mb 0.02: the picture and"),
+    (["--explore", "p.html", "--explore-mb", "0.02"], "--explore-mb 0.02: the picture and the coarsest grid"),
     (["--explore", "glass.json"], "would be both the scene and --explore")])
 def test_wrong_options_are_refused(options: list[str], message: str, source: Path, programs: Path, tmp_path: Path) -> None:
     shutil.copy(source / "scenes" / "glass.json", tmp_path)

@@ -12,8 +12,11 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file_bytes.h"
+#include "cistula/numerics/vec.h"
 #include "image/picture/picture_io.h"
 #include "render/pixel_report.h"
+#include "scene/compile/scene_normalization.h"
+#include "scene/description/platonic.h"
 
 namespace cistula {
 namespace {
@@ -76,12 +79,49 @@ std::string packed(const std::string& bytes) {
     return base64(out);
 }
 
-/// The number of steps that cover a length.
-int steps(int length, int step) {
-    return (length + step - 1) / step;
+Vec3<double> normal_of(const MeshSource& mesh, uint32_t triangle) {
+    const TriangleCorners& c = mesh.triangles[triangle];
+    const auto at = [&](size_t corner) { return Vec3<double>(mesh.vertices[c[corner]]); };
+    return cross(at(1) - at(0), at(2) - at(0));
+}
+
+/// Whether the triangles of two half-edges turn by less than a thousandth where they meet.
+bool in_one_plane(const MeshSource& mesh, uint32_t half, uint32_t other) {
+    const Vec3<double> a = normal_of(mesh, half / 3);
+    const Vec3<double> b = normal_of(mesh, other / 3);
+    const Vec3<double> turn = cross(a, b);
+    return dot(a, b) > 0 && dot(turn, turn) <= 1e-6 * dot(a, a) * dot(b, b);
+}
+
+/// The half-edges of a mesh that stand for its edges: alone, or with a later one along the same edge.
+std::vector<uint32_t> drawn_halves(const MeshSource& mesh, const std::vector<uint32_t>& next) {
+    std::vector<uint32_t> drawn;
+    for (uint32_t half = 0; half < next.size(); ++half)
+        if (next[half] == half || (next[half] > half && !in_one_plane(mesh, half, next[half]))) drawn.push_back(half);
+    return drawn;
 }
 
 }  // namespace
+
+std::vector<Wireframe> wireframes(const SceneSource& source, size_t most) {
+    std::vector<Wireframe> all;
+    for (const SourceSolid& solid : source.solids) {
+        Wireframe& wires = all.emplace_back();
+        if (solid.platonic) {
+            const std::vector<glm::dvec3> vertices = world_vertices(*solid.platonic);
+            for (const auto& [ends, faces] : platonic_shape(solid.platonic->solid).edges)
+                wires.push_back({vertices[ends[0]], vertices[ends[1]]});
+            continue;
+        }
+        const MeshSource& mesh = solid.mesh;
+        const std::vector<uint32_t> drawn = drawn_halves(mesh, link_edges(mesh).next);
+        for (size_t i = 0; i < drawn.size(); i += drawn.size() / (most + 1) + 1) {
+            const TriangleCorners& corners = mesh.triangles[drawn[i] / 3];
+            wires.push_back({mesh.vertices[corners[drawn[i] % 3]], mesh.vertices[corners[(drawn[i] + 1) % 3]]});
+        }
+    }
+    return all;
+}
 
 Explorer::Explorer(const Scene& scene, const CameraFrame& camera, const FrameSettings& settings)
     : scene_(scene), camera_(camera), settings_(settings) {
@@ -151,47 +191,39 @@ Explorer::Page Explorer::page(const std::string& start, double megabytes,
                               const std::function<std::unique_ptr<Renderer>()>& make, StopSignal stop) const {
     const int width = settings_.full_width;
     const int height = settings_.full_height;
-    tbb::enumerable_thread_specific<std::unique_ptr<Renderer>> renderers(make);
-    std::string rows;
-    const auto fill = [&](int step) {
-        std::vector<std::string> packs(static_cast<size_t>(steps(height, step)));
-        tbb::parallel_for(size_t{0}, packs.size(), [&](size_t row) {
-            std::string list;
-            for (int column = 0; column < steps(width, step); ++column) {
-                stop.check();
-                list += column == 0 ? "[" : ",";
-                const int x = std::min(column * step + step / 2, width - 1);
-                const int y = std::min(static_cast<int>(row) * step + step / 2, height - 1);
-                tbb::this_task_arena::isolate(  // from other rows, which would use the same renderer
-                    [&] { list += pixel(*renderers.local(), x, y, stop); });
-            }
-            packs[row] = packed(list + "]");
-        });
-        rows = fmt::format(R"(,"step":{},"rows":["{}"]}})", step, fmt::join(packs, R"(",")"));
-        return static_cast<size_t>(steps(width, step)) * packs.size();
-    };
-
     const double room = megabytes * 1e6 - static_cast<double>(start.size() + explorer_page.size());
     const int coarsest = std::max(1, std::min(width, height) / 8);
+    tbb::enumerable_thread_specific<std::unique_ptr<Renderer>> renderers(make);
     int step = coarsest;
-    size_t trees = fill(step);
-    for (bool too_fine = false; static_cast<double>(rows.size()) > room || !too_fine;) {
-        const auto bytes = static_cast<double>(rows.size());
-        too_fine |= bytes > room;
-        if (bytes > room && step == coarsest)
+    for (int pass = 1;; ++pass) {
+        std::vector<std::string> rows(static_cast<size_t>((height - 1) / step + 1));
+        tbb::parallel_for(size_t{0}, rows.size(), [&](size_t row) {
+            const int y = std::min(static_cast<int>(row) * step + step / 2, height - 1);
+            std::string list;
+            for (int left = 0; left < width; left += step) {
+                stop.check();
+                list += left == 0 ? "[" : ",";
+                tbb::this_task_arena::isolate(  // from other rows, which would use the same renderer
+                    [&] { list += pixel(*renderers.local(), std::min(left + step / 2, width - 1), y, stop); });
+            }
+            rows[row] = packed(list + "]");
+        });
+        const std::string data = fmt::format(R"(,"step":{},"rows":["{}"]}})", step, fmt::join(rows, R"(",")"));
+        const auto bytes = static_cast<double>(data.size());
+        const bool fits = bytes <= room;
+        if (!fits && step == coarsest)
             throw Error(ErrorKind::usage,
-                        fmt::format("`explore_mb` {}: the picture and {} pixels' rays take {:.1f}", megabytes, trees,
-                                    megabytes + (bytes - room) / 1e6),
+                        fmt::format("`explore_mb` {}: the picture and the coarsest grid of pixels take {:.1f}",
+                                    megabytes, megabytes + (bytes - room) / 1e6),
                         "give more, or a smaller `resolution` or `depth`");
-        const int fitting = static_cast<int>(std::ceil(step * std::sqrt(bytes / room)));
-        const int next = too_fine ? std::clamp(fitting, step + 1, coarsest) : std::clamp(fitting, 1, step);
-        if (next == step) break;
-        trees = fill(step = next);
+        const int fitting = std::clamp(static_cast<int>(std::ceil(step * std::sqrt(bytes / room))), 1, coarsest);
+        if (fits && (pass > 2 || fitting >= step)) {
+            std::string html(explorer_page);
+            constexpr std::string_view place = "/*DATA*/";
+            return {html.replace(html.find(place), place.size(), start.substr(0, start.size() - 1) + data), step};
+        }
+        step = pass > 2 ? step + 1 : fitting;
     }
-    std::string html(explorer_page);
-    constexpr std::string_view place = "/*DATA*/";
-    html.replace(html.find(place), place.size(), start.substr(0, start.size() - 1) + rows);
-    return {std::move(html), step, trees};
 }
 
 }  // namespace cistula

@@ -1,5 +1,4 @@
-// The explorer: a page that explains pixels by their ray trees. page.html, style.css and script.js beside this are its
-// text; a notebook's widget has the style and the script.
+// The explorer: a page that explains pixels by their rays. Its text is page.html, style.css and script.js beside this.
 #pragma once
 
 #include <array>
@@ -15,7 +14,7 @@
 
 namespace cistula {
 
-/// The files beside this, of which CMake makes a source; the page has the others in it, and /*DATA*/ where data go.
+/// The files beside this, by CMake; the page has the others in it, and /*DATA*/ where data go.
 extern const std::string_view explorer_page, explorer_style, explorer_script;
 
 /// The edges of a solid as pairs of points in scene units, without those between triangles in one plane.
@@ -38,17 +37,14 @@ class Explorer {
     /// kind, end: numbers of BranchKind and BranchEnd. A color is one number where its three are equal. adds: without
     /// what the lights add. lights: [light, adds, [solid on the way, ...]]. at: where it ends, from the camera; of the
     /// background the direction. what: the number of the solid or visible light. surface: [crossing, material, angle,
-    /// local, mirrored, transmitted, index before, index beyond, angle beyond: -1 of total reflection, 0 where it goes
-    /// straight].
+    /// local, mirrored, transmitted, index before, beyond, angle beyond (-1: total reflection, 0: straight on)].
     std::string pixel(Renderer& renderer, int x, int y, StopSignal stop) const;
 
     struct Page {
         std::string html;
-        int step;  // the distance of the pixels that have their trees in it
-        size_t trees;
+        int step;  // one pixel in step x step has its rays in it
     };
-    /// The page with as many trees as `megabytes` (10^6) allow. Throws Error (usage) if those are too few,
-    /// (interrupted).
+    /// The page with as fine a grid as `megabytes` (10^6) allow. Throws Error (usage) if none fits, and (interrupted).
     Page page(const std::string& start, double megabytes, const std::function<std::unique_ptr<Renderer>()>& make,
               StopSignal stop) const;
 
