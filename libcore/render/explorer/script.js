@@ -14,7 +14,7 @@ const BODY = `<header><h1>Why a pixel is what it is</h1><p class="about"></p></h
 <span class="lights" role="group" aria-label="lights"></span>
 <label class="end">rays that bring at least <select class="least"><option value="0">0 %</option><option value=".001">0.1 %</option><option value=".005" selected>0.5 %</option>
 <option value=".02">2 %</option><option value=".1">10 %</option></select></label><button class="compare" aria-pressed="false">a second pixel</button></div>
-<div class="pixels" aria-live="polite"></div>`;
+<div class="pixels"></div>`;
 
 // Vectors and colors are arrays of three.
 const add = (a, b, s = 1) => a.map((x, i) => x + s * b[i]), scaled = (a, s) => a.map(x => x * s), total = a => a[0] + a[1] + a[2];
@@ -185,11 +185,13 @@ function explore(root, data, ask, linked) {
     });
   }
   function card(p, i) {
-    const series = Array.from({length: p.depths}, (_, d) => weigh(p.tree, data, d + 1, off)), shown = Math.min(depth, p.depths);
+    const every = Math.ceil(p.depths / 64), shown = Math.min(depth, p.depths);  // depths to a column
+    const depths = Array.from({length: Math.ceil(p.depths / every)}, (_, i) => Math.min(p.depths, (i + 1) * every));
+    const series = depths.map(d => weigh(p.tree, data, d, off));
     const {brings, missing} = weigh(p.tree, data, depth, off), sum = total(brings), whole = sum + total(missing) || 1;
     const tallest = Math.max(...series.map(s => total(s.brings) + total(s.missing))) || 1, high = c => `height:${(100 * total(c) / tallest).toFixed(1)}%`;
-    const columns = series.map((s, d) => `<div data-depth="${d + 1}" title="depth ${d + 1}: ${numbers(s.brings)}, ${numbers(s.missing)} at most missing"${
-      d + 1 === shown ? ' class="now"' : ""}><i class="missing" style="${high(s.missing)}"></i><i style="${high(s.brings)};background:${css(s.brings)}"></i></div>`);
+    const columns = series.map((s, i) => `<div data-depth="${depths[i]}" title="depth ${depths[i]}: ${numbers(s.brings)}, ${numbers(s.missing)} at most missing"${
+      i + 1 === Math.ceil(shown / every) ? ' class="now"' : ""}><i class="missing" style="${high(s.missing)}"></i><i style="${high(s.brings)};background:${css(s.brings)}"></i></div>`);
     const part = r => total(r.brings) / (sum || 1), seen = r => r.brings.map((x, c) => x / (r.weight[c] || 1)), large = r => r === p.tree[0] || Math.max(total(r.brings), total(r.missing)) >= least() * whole;
     const list = p.tree.map((r, n) => [r, n]).filter(([r]) => r.level <= depth), told = list.filter(([r]) => large(r)).slice(0, 500);
     const lines = told.sort((a, b) => order(a[0], b[0], p.tree)).map(([r, n]) => `<li class="${KINDS[r.kind]}${r.unfollowed ? " unfollowed" : ""}" data-ray="${n}" style="--level:${Math.min(r.level, 14)}">
@@ -229,6 +231,7 @@ function explore(root, data, ask, linked) {
       [[5, 5, 3, 1], [5, 7, 3, 1], [5, 6, 1, 1], [7, 6, 1, 1]].forEach(side => g.fillRect(...side));
     });
     hot = undefined;
+    marks.setAttribute("aria-label", `the picture: pixel ${pixels[active].x}, ${pixels[active].y} is chosen; click another, or walk with the arrow keys`);
     mark(); draw();
   }
   let asked = 0;
