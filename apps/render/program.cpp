@@ -19,6 +19,7 @@
 #include "base/stages.h"
 #include "explain.h"
 #include "image/exr/exr.h"
+#include "render/explorer/explorer.h"
 #include "render/pixel_report.h"
 #include "scene/compile/materials/required_effects.h"
 #include "scene/readers/scene_formats.h"
@@ -181,6 +182,17 @@ void report_pixel(const RenderCommand& request, const SceneDescription& descript
                                                    request.pixel.x, request.pixel.y, flaws));
 }
 
+/// Adds a file that is written to those that the scene is read from, and makes its folder. Throws Error where it is one
+/// of them.
+void claim_output(const RenderCommand& request, const SceneSource& source, const std::string& path,
+                  const char* option) {
+    if (path.empty() || path == "-") return;
+    RunFiles files;
+    files.reads_scene(request.scene, source.files);
+    files.writes(path, option);
+    make_directory_of(path);
+}
+
 void report_pixel(const RenderCommand& request) {
     const SceneDescription scene = read_scene(request);
     const FrameSettings settings = frame_settings(request, scene);
@@ -194,13 +206,40 @@ void report_pixel(const RenderCommand& request) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<size_t>(threads_of(request)));
     SceneSource source = gather_scene(scene);
-    if (!request.json.empty() && request.json != "-") {
-        RunFiles files;
-        files.reads_scene(request.scene, source.files);
-        files.writes(request.json, "--json");
-        make_directory_of(request.json);
-    }
+    claim_output(request, source, request.json, "--json");
     report_pixel(request, scene, std::move(source), settings, camera);
+}
+
+void write_explorer(const RenderCommand& request) {
+    const SceneDescription description = read_scene(request);
+    FrameSettings settings = frame_settings(request, description);
+    const CameraFrame camera = camera_at(description.camera, request.frames.empty() ? 0 : request.frames.front());
+    RenderProgress progress;  // must outlive the guard
+    InterruptGuard guard;
+    guard.watch(progress.stop);
+    const StopSignal stop(progress.stop);
+    on_threads(request, [&] {
+        SceneSource source = gather_scene(description, stop);
+        claim_output(request, source, request.page, "--explore");
+        const std::vector<Wireframe> bodies = wireframes(source);
+        SceneTalk talk(request);
+        const Scene scene = compile_for(request, std::move(source), talk);
+        const auto make = [&] { return make_embree_renderer(scene); };
+        Film film;
+        render_frame(*make(), camera, settings, film, progress);
+        stop.check();
+        if (film.flags != 0)
+            throw Error(ErrorKind::failed, fmt::format("frame {} cannot be trusted: {}", camera.frame,
+                                                       describe_flags(film.flags, description)))
+                .at(description.source);
+        const Explorer explorer(scene, camera, settings);
+        const Explorer::Page page =
+            explorer.page(explorer.start(description.source, bodies, film), request.page_mb, make, stop);
+        write_output(request.page, page.html);
+        if (!request.quiet)
+            note(fmt::format("render: {}: {:.2f} MB, the rays of one pixel in {} x {}", request.page,
+                             static_cast<double>(page.html.size()) / 1e6, page.step, page.step));
+    });
 }
 
 void run(const RenderCommand& request, std::string& memory_advice) {
@@ -215,6 +254,8 @@ void run(const RenderCommand& request, std::string& memory_advice) {
             return print(with_options(list_devices_text()));
         case Action::pixel:
             return report_pixel(request);
+        case Action::explore:
+            return write_explorer(request);
         case Action::measure:
             return measure_scene(request);
         case Action::explain:
