@@ -9,7 +9,9 @@ COMMANDS = {
     "report": "what accuracy costs in time, measured and shown as a page",
     "view": "layers of EXR pictures as PNG, and contact sheets",
     "farm": "tasks of a film, for OpenJD, Slurm and make",
+    "import": "a scene of a mesh: PLY, OBJ or STL",
 }
+MODULES = {"import": "importer"}  # where its name is a word of Python
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -26,7 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if name not in COMMANDS:
         print(f"cistula: {name}: no such command; there are {', '.join(COMMANDS)}", file=sys.stderr)
         return 2
-    return run(name, lambda: int(importlib.import_module("." + name, "cistula").main(others)))
+    return run(name, lambda: int(importlib.import_module("." + MODULES.get(name, name), "cistula").main(others)))
 
 
 if __name__ == "__main__":
