@@ -33,6 +33,7 @@ struct MaterialDescription {
     double index = 1;
     glm::dvec3 absorption{0};  // per unit of length
     bool fresnel = false;
+    std::string map;  // of an OBJ's material: the picture that its library names for the color; renders do without
 };
 
 struct MeshData;    // readers/meshes/polygon_mesh.h
