@@ -131,8 +131,13 @@ void render_scene(const RenderRequest& request, std::string& memory_advice) {
     on_threads(request, [&] { render_sequence(request, told, progress, &snapshots); });
 }
 
+/// The scene as the first frame that is asked for has it.
+SceneDescription read_frame(const RenderRequest& request) {
+    return at_frame(read_scene(request), request.frames.empty() ? 0 : request.frames.front());
+}
+
 void explain(const RenderRequest& request) {
-    const SceneDescription scene = read_scene(request);
+    const SceneDescription scene = read_frame(request);
     SceneSource source = gather_scene(scene);
     const Precision precision = warned_precision(request, source);
     print(explain_table(scene.source, explain_scene(std::move(source), precision), request.backend));
@@ -140,7 +145,7 @@ void explain(const RenderRequest& request) {
 
 void measure_scene(const RenderRequest& request) {
     const ChosenDevices devices = choose_devices(request.backend, request.devices);
-    const SceneDescription scene = read_scene(request);
+    const SceneDescription scene = read_frame(request);
     const FrameSettings settings = frame_settings(request, scene);
     StepProgress progress(request.quiet ? ProgressStyle::none : request.progress);  // must outlive the guard
     InterruptGuard guard;
@@ -194,7 +199,7 @@ void claim_output(const RenderCommand& request, const SceneSource& source, const
 }
 
 void report_pixel(const RenderCommand& request) {
-    const SceneDescription scene = read_scene(request);
+    const SceneDescription scene = read_frame(request);
     const FrameSettings settings = frame_settings(request, scene);
     const ChosenPixel& pixel = request.pixel;
     if (pixel.x >= settings.full_width || pixel.y >= settings.full_height)
