@@ -119,7 +119,7 @@ class Check:
         """Names what in a text, a command or one that may have some, is not there."""
         text = re.sub(r"(^| )# .*", "", text)
         word, *rest = text.split() or [""]
-        script = self.root / word if is_command and "/" in word else None
+        script = self.root / word if is_command and "/" in word and not word.startswith("build/") else None
         if script and script.is_file():
             for option in set(OPTION.findall(text)) - set(OPTION.findall(script.read_text())) - self.options["render"]:
                 self.faults.append(f"{page}:{line}: {word} has no {option}")

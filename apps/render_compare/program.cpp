@@ -11,6 +11,7 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/programs.h"
 #include "base/error.h"
 #include "base/file_bytes.h"
 #include "base/shown_text.h"
@@ -166,12 +167,12 @@ int run(const CompareOptions& options) {
 }
 
 }  // namespace
-}  // namespace cistula
 
-int main(int argc, char** argv) {
-    using namespace cistula;
+int render_compare_program(int argc, const char* const* argv) {
     return run_program("render-compare", "smaller images need less", [&] {
         if (argc > 1 && std::string_view(argv[1]) == "suite") return run_suite(argc - 1, argv + 1);
         return run(parse_compare_options(argc, argv));
     });
 }
+
+}  // namespace cistula

@@ -175,12 +175,12 @@ void run(const MergeOptions& options) {
 }
 
 }  // namespace
-}  // namespace cistula
 
-int main(int argc, char** argv) {
-    using namespace cistula;
+int render_merge_program(int argc, const char* const* argv) {
     return run_program("render-merge", "a whole frame is held at a time; one of fewer layers needs less", [&] {
         run(parse_merge_options(argc, argv));
         return static_cast<int>(ExitCode::done);
     });
 }
+
+}  // namespace cistula
