@@ -82,10 +82,11 @@ TEST(Keys, ChangeEverythingThatMayChange) {
 TEST(Keys, AFrameIsTheSceneWithItsValuesWrittenOut) {
     const auto scene = [](const std::string& center, const std::string& color) {
         return json_scene(R"({"materials": {"m": {"color": )" + color + R"(}}, "objects": [{"solid": "cube",
-            "material": "m", "center": )" + center + "}]}");
+            "material": "m", "center": )" +
+                          center + "}]}");
     };
-    const SceneDescription moving =
-        scene(R"({"keys": [[0, [0, 0, 0]], [8, [8, 4, 0]]]})", R"({"keys": [[0, 0], [8, 1]], "interpolation": "step"})");
+    const SceneDescription moving = scene(R"({"keys": [[0, [0, 0, 0]], [8, [8, 4, 0]]]})",
+                                          R"({"keys": [[0, 0], [8, 1]], "interpolation": "step"})");
     EXPECT_EQ(SceneDump::of(at_frame(moving, 2)), SceneDump::of(scene("[2, 1, 0]", "0")));
     EXPECT_EQ(SceneDump::of(at_frame(moving, 9)), SceneDump::of(scene("[8, 4, 0]", "1")));
 }
@@ -112,7 +113,7 @@ TEST(Keys, FaultsHaveTheirPlace) {
     EXPECT_WRONG(light_with(R"({"keys": []})"),
                  at + "/keys: expected an array of keys [frame, value], found an empty array");
     EXPECT_WRONG(light_with(R"({"keys": [[0, [0, 0, 0]]], "interpolation": "smoth"})"),
-                 at + "/interpolation: unknown value 'smoth'; did you mean 'smooth'? The values are: linear, smooth, step");
+                 at + "/interpolation: unknown value 'smoth'; did you mean 'smooth'?");
     EXPECT_WRONG(light_with(R"({"interpolation": "step"})"), at + ": missing key 'keys'");
     EXPECT_WRONG(light_with(R"({"keys": [["a", [0, 0, 0]]]})"),
                  at + "/keys/0/0: expected a number from -1000000 to 1000000, found 'a'");

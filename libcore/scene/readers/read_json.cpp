@@ -315,7 +315,8 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
     keys.read("depth", scene.depth);
     keys.read("cutoff", scene.cutoff);
     keys.read("contact", scene.contact);
-    if (keys.has("ambient") || keys.has("background")) file->read_around(scene, clock);
+    const bool has_ambient = keys.has("ambient");
+    if (keys.has("background") || has_ambient) file->read_around(scene, clock);
     if (keys.has("film")) scene.film = read_film(keys.at("film"));
     if (keys.has("camera")) {
         KeyClock of_camera;
