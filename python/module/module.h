@@ -65,5 +65,6 @@ void bind_scene(nb::module_& m);
 void bind_image(nb::module_& m);
 void bind_pixel(nb::module_& m);
 void bind_compare(nb::module_& m);
+void bind_programs(nb::module_& m);
 
 }  // namespace cistula::python

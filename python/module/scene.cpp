@@ -77,6 +77,7 @@ class Frames {
         if (image.film.flags != 0)
             throw Error(ErrorKind::failed, fmt::format("{}: frame {} cannot be trusted: {}", description.source,
                                                        camera.frame, describe_flags(image.film.flags, description)));
+        image.scene = scene_;
         image.settings = settings_;
         image.frame = camera.frame;
         image.picture = channels_of(image.film, request_.channels, &image.clamped);

@@ -1,4 +1,4 @@
-"""Rays, segments, pixels and comparisons."""
+"""Rays, segments, pixels, comparisons and the self-check."""
 from __future__ import annotations
 
 import json
@@ -107,3 +107,19 @@ def test_pictures_are_compared(scene: cistula.Scene, tmp_path: Path) -> None:
     assert cistula.compare(image, other, layers="A", fail=0) and json.loads(differ.json())
     with pytest.raises(cistula.FileError, match="none.exr"):
         cistula.compare(image, tmp_path / "none.exr")
+
+
+def test_the_renderer_checks_itself() -> None:
+    told: list[cistula.CaseResult] = []
+    results = cistula.verify(True, cases="geometry/axis-parallel", precision="double", progress=told.append)
+    assert {row.intersector for row in results} >= {"embree", "bvh", "brute"} and {row.precision for row in results} == {"double"}
+    assert all(results) and len(told) == len(results) and all(row.tried > 0 and row.unit and not row.complaint for row in results)
+    with pytest.raises(cistula.ArgumentError, match="backend=embre: must be embree or cuda or all; did you mean 'embree'"):
+        cistula.verify(backend="embre")
+    with pytest.raises(cistula.ArgumentError, match="geometry/nothing"):
+        cistula.verify(cases=["geometry/nothing"])
+
+    def stop(row: cistula.CaseResult) -> None:
+        raise InterruptedError(row.name)
+    with pytest.raises(InterruptedError, match="geometry/axis-parallel"):
+        cistula.verify(True, cases=["geometry/axis-parallel"], progress=stop)
