@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+
+#include <nanobind/stl/filesystem.h>
 
 #include "base/atomic_file.h"
+#include "base/file_bytes.h"
 #include "base/suggest.h"
 #include "image/exr/exr.h"
 #include "image/picture/picture_io.h"
@@ -67,7 +71,15 @@ nb::object target_of(const Image& image) {
     return told;
 }
 
-void save(Image& image, const std::string& path) {
+/// The name of a file to be written. Throws Error (usage) for another suffix.
+std::string named(const std::filesystem::path& path, const char* suffix) {
+    if (lower_extension(path.string()) != suffix)
+        throw Error(ErrorKind::usage, fmt::format("`path`={}: must be named *{}", path.string(), suffix));
+    return path.string();
+}
+
+void save(Image& image, const std::filesystem::path& given) {
+    const std::string path = named(given, ".exr");
     {
         const nb::gil_scoped_release free;
         image.clamped = 0;
@@ -219,16 +231,20 @@ void bind_image(nb::module_& m) {
             },
             nb::sig("def header(self) -> dict[str, str | int | float | list[float] | tuple[int, int]]"),
             "What the header of its EXR says: the scene's hash, camera, depth and so on.")
-        .def("save", save, "path"_a, "Writes the EXR that render writes, byte for byte; whole or not at all.")
+        .def("save", save, "path"_a, nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
+             "Writes the EXR that render writes, byte for byte; whole or not at all.")
         .def(
             "preview",
-            [](const Image& image, const std::string& path, double exposure, const std::string& view, double bloom) {
+            [](const Image& image, const std::filesystem::path& path, double exposure, const std::string& view,
+               double bloom) {
                 const nb::gil_scoped_release free;
-                write_file_atomically(path, png_of(image, {{"exposure", fmt::format("{}", exposure)},
-                                                           {"view", view},
-                                                           {"bloom", fmt::format("{}", bloom)}}));
+                write_file_atomically(named(path, ".png"), png_of(image, {{"exposure", fmt::format("{}", exposure)},
+                                                                          {"view", view},
+                                                                          {"bloom", fmt::format("{}", bloom)}}));
             },
             "path"_a, "exposure"_a = 0.0, "view"_a = "srgb", "bloom"_a = 0.0,
+            nb::sig("def preview(self, path: str | os.PathLike[str], exposure: float = 0.0, view: str = 'srgb', bloom: "
+                    "float = 0.0) -> None"),
             "Writes the PNG that `render --preview` writes: 8 bits, sRGB; exposure in stops, view \"srgb\", \"filmic\" "
             "or one of $OCIO.")
         .def(
