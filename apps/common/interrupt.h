@@ -5,13 +5,13 @@
 
 namespace cistula {
 
-/// While an object of this class exists, the first SIGINT, SIGTERM, SIGHUP, or SIGPIPE that another process sends, is
-/// caught and the second ends the process, unless that is SIGPIPE where run_program() has it be a write error.
-/// Before watch() the first one also ends it, with exit code 130 and a line that says that nothing was written. Only
-/// one object at a time.
+/// While an object of this class exists, the first SIGINT, SIGTERM, SIGHUP, or SIGPIPE that another process sends, sets
+/// a flag, and the second ends the process at once, with exit code 130 and without the temporaries of files
+/// (AtomicFile). So does the first one, with a line, where no flag is watched. One within another is the same one.
 class InterruptGuard {
   public:
-    InterruptGuard();
+    /// `program`: its name, for the line.
+    explicit InterruptGuard(const char* program = "render");
     ~InterruptGuard();
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;

@@ -22,6 +22,7 @@
 #include "image/reader/picture_reader.h"
 #include "options.h"
 #include "sequence/output_name.h"
+#include "sequence/run_files.h"
 #include "suite_options.h"
 
 namespace cistula {
@@ -37,8 +38,9 @@ struct Judged {
 Judged judge_files(const CompareOptions& options, const std::string& first, const std::string& second,
                    StopSignal stop) {
     StoredReader reader;
-    const StoredFile a = reader.read(first);
-    const StoredFile b = reader.read(second);
+    const auto [a, b] = reader.read_two(first, second, [&](const StoredFile& one, const StoredFile& other) {
+        return compares_values(one, other, options.selection);
+    });
     stop.check();
     Selection selection = options.selection;
     if (!options.mask.empty()) selection.mask = mask_of(reader.read(options.mask).pictures.front());
@@ -88,8 +90,13 @@ Judged judge_several(const CompareOptions& options, StopSignal stop) {
     const std::map<std::string, std::string> first = images_of(options.a);
     const std::map<std::string, std::string> second = images_of(options.b);
     std::set<std::string> names;
+    RunFiles files;
     for (const auto* images : {&first, &second})
-        for (const auto& [name, path] : *images) names.insert(name);
+        for (const auto& [name, path] : *images) {
+            names.insert(name);
+            files.reads(path, "an image");
+        }
+    if (options.json != "-") files.writes(options.json, "--json");
     Judged all;
     all.json = {{"first", options.a}, {"second", options.b}, {"holds", true}, {"images", nlohmann::json::array()}};
     size_t held = 0;
@@ -117,8 +124,9 @@ Judged judge_several(const CompareOptions& options, StopSignal stop) {
 
 bool compare_images(const CompareOptions& options) {
     std::atomic<bool> stop = false;
-    InterruptGuard guard;  // before there are files and processes
-    guard.watch(stop);
+    InterruptGuard guard;
+    // FLIP has files and processes to leave in order; nothing else does.
+    if (options.selection.flip || options.thresholds.flip) guard.watch(stop);
     const Judged judged =
         names_several(options.a) ? judge_several(options, stop) : judge_files(options, options.a, options.b, stop);
     const std::string json = judged.json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

@@ -19,6 +19,9 @@ struct Box {
             if (p[axis] > high[axis]) high[axis] = p[axis];
         }
     }
+    void add(const Box& other) {
+        if (!other.empty()) add(other.low), add(other.high);
+    }
     bool empty() const { return !(low.x <= high.x); }
     std::array<glm::dvec3, 8> corners() const {
         std::array<glm::dvec3, 8> all;

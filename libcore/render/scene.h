@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,7 +18,10 @@
 
 namespace cistula {
 
+class SceneFrames;
+
 /// A compiled scene, immutable; copies share it. Renderers are made of it by make_embree_renderer and make_renderer.
+/// One that keys change is compiled as a frame has it.
 class Scene {
   public:
     /// Compiles in the wanted precision; without one, in float unless a part of the scene is too small for it. The
@@ -40,10 +45,16 @@ class Scene {
     const std::vector<std::string>& warnings() const { return warnings_; }
     const SceneNames& names() const { return names_; }
 
-    /// What tells it from other scenes.
-    const FrameHashes& hashes() const {
-        return visit([](const auto& scene) -> const FrameHashes& { return scene->hashes; });
-    }
+    /// Whether keys change it from frame to frame.
+    bool moves() const { return frames_ != nullptr; }
+    /// The scene as a frame has it, which does not change. Compiles it where it is another than the last. Throws Error
+    /// as the constructors do.
+    Scene at(int frame, StopSignal stop = {}) const;
+    /// The frame that it is compiled as.
+    int shown() const { return shown_; }
+
+    /// What tells it, at each frame, from other scenes.
+    FrameHashes hashes() const;
     /// Mask of the effects that the scene requires.
     uint32_t effects() const {
         return visit([](const auto& scene) { return scene->effects; });
@@ -57,6 +68,8 @@ class Scene {
     void compile(SceneSource source);
 
     PrecisionChoice choice_;
+    int shown_ = 0;
+    std::shared_ptr<SceneFrames> frames_;  // null: it does not change
     SceneNames names_;
     std::vector<std::string> warnings_;
     std::variant<std::shared_ptr<const CompiledScene<float>>, std::shared_ptr<const CompiledScene<double>>> compiled_;

@@ -7,6 +7,7 @@
 #include "backend_embree/embree/embree_renderer.h"
 #include "base/error.h"
 #include "base/option_text.h"
+#include "base/stages.h"
 #include "base/suggest.h"
 
 namespace cistula {
@@ -153,8 +154,83 @@ template std::unique_ptr<Renderer> make_renderer<float>(Backend, std::shared_ptr
 template std::unique_ptr<Renderer> make_renderer<double>(Backend, std::shared_ptr<const CompiledScene<double>>,
                                                          const CudaOptions&);
 
-std::unique_ptr<Renderer> make_renderer(Backend backend, const Scene& scene, const CudaOptions& options) {
+namespace {
+
+std::unique_ptr<Renderer> make_still_renderer(Backend backend, const Scene& scene, const CudaOptions& options) {
     return scene.visit([&](const auto& compiled) { return make_renderer(backend, compiled, options); });
+}
+
+/// Renders each frame of a scene that changes by a renderer of its own. Questions about rays are about the frame that
+/// the scene was compiled as.
+class MovingRenderer : public Renderer {
+  public:
+    MovingRenderer(Backend backend, Scene scene, const CudaOptions& options)
+        : backend_(backend), scene_(std::move(scene)), options_(options) {
+        show(scene_.shown(), {});
+    }
+
+    bool render(const CameraFrame& camera, const FrameSettings& settings, Film& film,
+                RenderProgress& progress) override {
+        try {
+            show(camera.frame, progress.stop);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::interrupted) throw;
+            return false;
+        }
+        return renderer_->render(camera, settings, film, progress);
+    }
+    RayHits intersect(std::span<const glm::dvec3> origins, std::span<const glm::dvec3> directions) override {
+        show(scene_.shown(), {});
+        return renderer_->intersect(origins, directions);
+    }
+    std::vector<glm::dvec3> transmittance(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to) override {
+        show(scene_.shown(), {});
+        return renderer_->transmittance(from, to);
+    }
+    PixelTree pixel_tree(const CameraFrame& camera, const FrameSettings& settings, int x, int y,
+                         const PixelTreeLimits& limits) override {
+        show(camera.frame, limits.stop);
+        return renderer_->pixel_tree(camera, settings, x, y, limits);
+    }
+    size_t frames_ahead() const override { return 0; }
+    uint32_t effects() const override { return renderer_->effects(); }
+    int lanes() const override { return renderer_->lanes(); }
+    std::string intersector() const override { return renderer_->intersector(); }
+    RenderTimes times() const override { return renderer_->times(); }
+    std::vector<std::string> notes() const override {
+        std::vector<std::string> all = renderer_->notes();
+        all.insert(all.end(), notes_.begin(), notes_.end());
+        return all;
+    }
+    size_t memory() const override { return renderer_->memory(); }
+
+  private:
+    void show(int frame, StopSignal stop) {
+        if (renderer_ && shown_ == frame) return;
+        renderer_.reset();
+        const InStage stage(Stage::compile);
+        const Scene scene = scene_.at(frame, stop);
+        notes_.clear();
+        for (const std::string& warning : scene.warnings())
+            if (std::find(scene_.warnings().begin(), scene_.warnings().end(), warning) == scene_.warnings().end())
+                notes_.push_back(fmt::format("frame {}: {}", frame, warning));
+        renderer_ = make_still_renderer(backend_, scene, options_);
+        shown_ = frame;
+    }
+
+    const Backend backend_;
+    const Scene scene_;
+    const CudaOptions options_;
+    std::unique_ptr<Renderer> renderer_;
+    int shown_ = 0;
+    std::vector<std::string> notes_;  // on the frame that is shown
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> make_renderer(Backend backend, const Scene& scene, const CudaOptions& options) {
+    if (scene.moves()) return std::make_unique<MovingRenderer>(backend, scene, options);
+    return make_still_renderer(backend, scene, options);
 }
 
 }  // namespace cistula

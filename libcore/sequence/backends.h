@@ -54,6 +54,7 @@ template <class Real>
 std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const CompiledScene<Real>> scene,
                                         const CudaOptions& options);
 
+/// A renderer of a scene. One that keys change is compiled again, and goes to the devices whole, for each frame.
 std::unique_ptr<Renderer> make_renderer(Backend backend, const Scene& scene, const CudaOptions& options);
 
 /// Whether this build has the CUDA backend, independent of GPUs in this machine.

@@ -177,11 +177,12 @@ RunStats render_sequence(const RenderRequest& asked, SequenceEvents& events, Ren
     std::future<ChosenDevices> devices =
         std::async(std::launch::async, [&request] { return choose_devices(request.backend, request.devices); });
     enter_stage(Stage::read);
-    const SceneDescription description = read_scene(request);
+    SceneDescription description = read_scene(request);
     enter_stage(Stage::other);
     if (const std::string warning = open_config_view(request.view); !warning.empty()) events.warning(warning);
     const FrameSettings settings = frame_settings(request, description);
     SequenceFiles files(request, description);
+    if (description.motion && !files.frames.empty()) description.motion->set(description, files.frames.front());
     RunStats stats;
     stats.scene = request.scene;
     stats.images = files.image.text();

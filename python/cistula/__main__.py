@@ -17,7 +17,9 @@ COMMANDS = PROGRAMS | {
     "report": "what accuracy costs in time, measured and shown as a page",
     "view": "layers of EXR pictures as PNG, and contact sheets",
     "farm": "tasks of a film, for OpenJD, Slurm and make",
+    "import": "a scene of a mesh: PLY, OBJ or STL",
 }
+MODULES = {"import": "importer"}  # where its name is a word of Python
 
 
 def run_program(name: str, arguments: Sequence[str]) -> int:
@@ -47,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     if name in PROGRAMS:
         return run(name, lambda: run_program(name, others))
-    return run(name, lambda: int(importlib.import_module("." + name, "cistula").main(others)))
+    return run(name, lambda: int(importlib.import_module("." + MODULES.get(name, name), "cistula").main(others)))
 
 
 if __name__ == "__main__":

@@ -4,16 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
-#include <nanobind/stl/filesystem.h>
-
+#include "backend_embree/embree/embree_renderer.h"
 #include "base/atomic_file.h"
 #include "base/file_bytes.h"
 #include "base/suggest.h"
 #include "image/exr/exr.h"
 #include "image/picture/picture_io.h"
 #include "image/view/picture_view.h"
+#include "render/explorer/explorer.h"
 #include "render/record/film_picture.h"
 #include "render/record/target_report.h"
 #include "sequence/frame_writer.h"
@@ -101,6 +100,35 @@ std::string png_of(const Image& image, const Keywords& view) {
         viewed(to_color(image.film, transparent), request.view, static_cast<uint32_t>(image.film.full_height)));
 }
 
+Explorer explorer_of(const Image& image) {
+    return {image.scene->scene(), camera_at(image.scene->description().camera, image.frame), image.settings};
+}
+
+nb::object explore(Self self, const std::optional<std::string>& path, double mb) {
+    const Image& image = image_of(self);
+    const SceneDescription& description = image.scene->description();
+    if (image.film.rect.width != image.film.full_width || image.film.rect.height != image.film.full_height)
+        throw Error(ErrorKind::usage, "the explorer shows whole frames, and this is a crop; render it without `crop`");
+    std::string text;
+    std::atomic<bool> stop{false};
+    run_interruptibly(stop, [&] {
+        const Explorer explorer = explorer_of(image);
+        text = explorer.start(description.source, wireframes(gather_scene(description, stop)), image.film);
+        const auto make = [&] { return make_embree_renderer(image.scene->scene()); };
+        if (path) write_file_atomically(*path, explorer.page(text, mb, make, stop).html);
+    });
+    if (path) return nb::none();
+    return nb::module_::import_("cistula.explorer").attr("widget")(self, text);
+}
+
+std::string explorer_rays(const Image& image, int x, int y) {
+    std::string text;
+    std::atomic<bool> stop{false};
+    run_interruptibly(
+        stop, [&] { text = explorer_of(image).pixel(*LentRenderer(image.scene, Backend::embree, {}), x, y, stop); });
+    return text;
+}
+
 }  // namespace
 
 const std::vector<float>& Image::channel(const std::string& name) {
@@ -119,6 +147,8 @@ const std::vector<float>& Image::channel(const std::string& name) {
 }
 
 void bind_image(nb::module_& m) {
+    m.attr("explorer_script") = std::string(explorer_script);
+    m.attr("explorer_style") = std::string(explorer_style);
     nb::class_<Image>(
         m, "Image", nb::is_weak_referenceable(),
         "A finished frame: channels by name as arrays (`image[\"R\"]`), its sums, its header.\n\n"
@@ -247,6 +277,12 @@ void bind_image(nb::module_& m) {
                     "float = 0.0) -> None"),
             "Writes the PNG that `render --preview` writes: 8 bits, sRGB; exposure in stops, view \"srgb\", \"filmic\" "
             "or one of $OCIO.")
+        .def("explore", explore, "path"_a.none() = nb::none(), nb::kw_only(), "mb"_a = 5.0,
+             nb::sig("def explore(self, path: str | None = None, *, mb: float = 5.0) -> typing.Any"),
+             "Writes the page that `render --explore` writes, of at most `mb` megabytes: a click on a pixel shows its "
+             "rays. "
+             "Without a path, in a notebook: a widget that does, which asks for any pixel.")
+        .def("_explorer_rays", explorer_rays, "x"_a, "y"_a, "A pixel's rays for the widget's script. Internal.")
         .def(
             "_repr_png_",
             [](const Image& image) {

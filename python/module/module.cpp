@@ -19,7 +19,8 @@
 namespace cistula::python {
 namespace {
 
-constexpr std::pair<std::string_view, const char*> other_names[] = {{"resolution", "size"}, {"device", "devices"}};
+constexpr std::pair<std::string_view, const char*> other_names[] = {
+    {"resolution", "size"}, {"device", "devices"}, {"explore_mb", "mb"}};
 
 constexpr const char* kinds[] = {"usage", "scene", "file", "device", "failed", "target", "interrupted"};
 

@@ -37,7 +37,7 @@ struct Followed {
 Followed follow_pixel(const SuiteCase& one, const SceneDescription& scene, FrameSettings settings, Precision precision,
                       int frame, const SuitePixel& pixel, StopSignal stop) {
     settings.layers = {};
-    const Scene compiled(scene, precision, stop);
+    const Scene compiled(at_frame(scene, frame), precision, stop);
     const CameraFrame camera = camera_at(scene.camera, frame);
     PixelTree tree =
         make_embree_renderer(compiled)->pixel_tree(camera, settings, pixel.x, pixel.y, {most_branches, stop});

@@ -75,6 +75,7 @@ class Compiler {
         if (description_.contact) hash_.add(*description_.contact);
         hash_.add(normalization_.center);
         hash_.add(static_cast<uint32_t>(normalization_.scale));
+        if (source_.moving) hash_.add(normalization_.extent);
 
         for (const SolidContacts& solid : bodies_.contacts.solids) scene_.reaches.push_back(solid.reach);
         compile_convex();
@@ -221,7 +222,7 @@ class Compiler {
                 return box;
             },
             [](Box box, const Box& next) {
-                if (!next.empty()) box.add(next.low), box.add(next.high);
+                box.add(next);
                 return box;
             });
         return prepared;

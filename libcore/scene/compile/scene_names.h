@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,12 +27,14 @@ class FrameHashes {
   public:
     /// Hashes of a scene in which nothing moves: one for all frames.
     FrameHashes(std::string still = "") : still_(std::move(still)) {}
+    /// Hashes of one that changes, each found when it is asked for.
+    explicit FrameHashes(std::function<std::string(int)> moving) : moving_(std::move(moving)) {}
 
-    const std::string& of([[maybe_unused]] int frame) const { return still_; }
-    bool operator==(const FrameHashes&) const = default;
+    std::string of(int frame) const { return moving_ ? moving_(frame) : still_; }
 
   private:
     std::string still_;
+    std::function<std::string(int)> moving_;
 };
 
 /// The names of what layers tell apart, by the numbers of the compiled scene.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "base/box.h"
 #include "cistula/numerics/vec.h"
 #include "scene/compile/scene_source.h"
 #include "scene/description/platonic.h"
@@ -33,21 +32,6 @@ void add_solid(Box& box, const SolidObject& solid) {
     }
 }
 
-Box world_box(const SceneSource& source) {
-    Box box;
-    for (const SourceSolid& solid : source.solids) {
-        if (solid.platonic) {
-            add_solid(box, *solid.platonic);
-        } else {
-            for (const glm::dvec3& p : solid.mesh.vertices)
-                if (is_finite(p)) box.add(p);
-        }
-    }
-    for (const LightDescription& light : source.description->lights)
-        if (light.shown()) add_sphere(box, light.position, light.radius);
-    return box;
-}
-
 double largest_coordinate(const Box& box, const glm::dvec3& center) {
     double largest = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -67,9 +51,25 @@ std::vector<glm::dvec3> world_vertices(const SolidObject& solid) {
     return vertices;
 }
 
+Box world_box(const SceneSource& source) {
+    Box box;
+    for (const SourceSolid& solid : source.solids) {
+        if (solid.platonic) {
+            add_solid(box, *solid.platonic);
+        } else {
+            for (const glm::dvec3& p : solid.mesh.vertices)
+                if (is_finite(p)) box.add(p);
+        }
+    }
+    for (const LightDescription& light : source.description->lights)
+        if (light.shown()) add_sphere(box, light.position, light.radius);
+    return box;
+}
+
 SceneNormalization find_normalization(const SceneSource& source) {
     const SceneDescription& description = *source.description;
-    const Box box = world_box(source);
+    Box box = world_box(source);
+    if (source.moving) box.add(source.moving->box);
     SceneNormalization normalization;
     if (description.frame) {
         normalization.center = description.frame->center;
@@ -82,6 +82,11 @@ SceneNormalization find_normalization(const SceneSource& source) {
     const double largest = box.empty() ? 0 : largest_coordinate(box, normalization.center);
     if (!is_finite(largest) || (largest > 0 && (largest < 0x1p-900 || largest > 0x1p900)))
         throw scene_error(description, "", "the scene's size is outside what doubles can hold (2^-900 to 2^900)");
+    for (const SourceSolid& solid : source.solids)
+        if (solid.platonic && solid.platonic->radius < 0x1p-50 * largest)
+            throw scene_error(description, solid.place,
+                              "so small beside the scene that double precision makes a point of it",
+                              "give it a larger radius, or bring what is far away nearer");
     if (!description.frame && largest > 0) {
         int exponent;
         std::frexp(largest, &exponent);

@@ -5,6 +5,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "base/box.h"
 #include "scene/description/description.h"
 
 namespace cistula {
@@ -20,7 +21,10 @@ struct SceneNormalization {
     glm::dvec3 point(const glm::dvec3& world) const { return (world - center) * factor; }
 };
 
-/// The frame of a scene. M lies in [1, 2), unless the description gives the frame; then M follows from it, and 2 or
+/// A box around a scene's solids and visible lights, in scene units.
+Box world_box(const SceneSource& source);
+
+/// The frame of a scene, for all frames of a film. M lies in [1, 2), unless the description gives the frame; then M follows from it, and 2 or
 /// more is an error.
 SceneNormalization find_normalization(const SceneSource& source);
 

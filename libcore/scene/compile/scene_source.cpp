@@ -7,8 +7,10 @@
 #include "base/default_rounding.h"
 #include "cistula/numerics/vec.h"
 #include "scene/compile/meshes/mesh_solids.h"
+#include "scene/compile/scene_normalization.h"
 #include "scene/compile/solids/placed_bodies.h"
 #include "scene/description/platonic.h"
+#include "scene/description/rotation.h"
 #include "scene/readers/scene_keys.h"
 
 namespace cistula {
@@ -132,7 +134,8 @@ std::string name_of(const SourceSolid& solid) {
 
 namespace {
 
-SceneSource gathered_scene(const SceneDescription& description, SceneAssets assets, StopSignal stop) {
+/// A scene whose solids are not placed in its frame yet.
+SceneSource gathered_parts(const SceneDescription& description, SceneAssets assets, StopSignal stop) {
     SceneSource source;
     source.description = &description;
     source.stop = stop;
@@ -204,6 +207,70 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
             throw scene_error(description, solid.place, what + "the triangles have no texture coordinates",
                               "give one uv a vertex");
     }
+    return source;
+}
+
+/// A sphere around a mesh file's vertices, in its own coordinates.
+struct MeshBall {
+    dvec3 center{0};
+    double radius = 0;
+
+    explicit MeshBall(const MeshData& data) {
+        Box box;
+        for (const PolygonMesh& group : data.groups)
+            for (const dvec3& p : group.vertices)
+                if (is_finite(p)) box.add(p);
+        if (box.empty()) return;
+        center = 0.5 * box.low + 0.5 * box.high;
+        for (const PolygonMesh& group : data.groups)
+            for (const dvec3& p : group.vertices)
+                if (is_finite(p)) radius = max_or_second(length(p - center), radius);
+        radius *= 1 + 0x1p-40;  // above all rounding of placed vertices
+    }
+
+    void add_to(Box& box, const MeshObject& mesh) const {
+        const dvec3 placed = mesh.center + Rotation(mesh.rotation)(mesh.scale * center);
+        const dvec3 reach(mesh.scale * radius + 0x1p-40 * length(placed));
+        box.add(placed - reach);
+        box.add(placed + reach);
+    }
+};
+
+/// The box around what changes, in all frames: of meshes around a sphere that turns with them, else of what is there.
+Box box_of_motion(const SceneDescription& description, const SceneAssets& assets, StopSignal stop) {
+    const Motion& motion = *description.motion;
+    std::map<size_t, MeshBall> meshes;
+    for (const size_t i : motion.objects)
+        if (assets.meshes[i]) meshes.emplace(i, *assets.meshes[i]);
+    SceneDescription at = description;
+    SceneDescription part = description;  // what changes, but for meshes
+    Box box;
+    for (int frame = motion.frames.front(); frame <= motion.frames.back(); ++frame) {
+        stop.check();
+        motion.set(at, frame);
+        part.objects.clear();
+        part.lights.clear();
+        for (const size_t i : motion.lights) part.lights.push_back(at.lights[i]);
+        for (const size_t i : motion.objects)
+            if (const auto mesh = meshes.find(i); mesh != meshes.end())
+                mesh->second.add_to(box, std::get<MeshObject>(at.objects[i].shape));
+            else
+                part.objects.push_back(at.objects[i]);
+        box.add(world_box(gathered_parts(part, {}, stop)));
+    }
+    return box;
+}
+
+/// `moving`: of a scene that changes, if it is known already.
+SceneSource gathered_scene(const SceneDescription& description, SceneAssets assets, StopSignal stop,
+                           std::shared_ptr<const MovingScene> moving = nullptr) {
+    const bool keeps_assets = description.motion && !moving;  // else they are freed as they are placed
+    SceneSource source = gathered_parts(description, keeps_assets ? assets : std::move(assets), stop);
+    if (keeps_assets) {
+        const Box box = box_of_motion(description, assets, stop);
+        moving = std::make_shared<const MovingScene>(MovingScene{description, std::move(assets), box});
+    }
+    source.moving = std::move(moving);
     source.bodies = std::make_shared<const PlacedBodies>(source);
     return source;
 }
@@ -212,6 +279,15 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
 
 SceneSource gather_scene(const SceneDescription& description, SceneAssets assets, StopSignal stop) {
     return in_default_rounding([&] { return gathered_scene(description, std::move(assets), stop); });
+}
+
+SceneSource gather_frame(const std::shared_ptr<const MovingScene>& moving, int frame, StopSignal stop) {
+    return in_default_rounding([&] {
+        auto own = std::make_shared<const SceneDescription>(at_frame(moving->description, frame));
+        SceneSource source = gathered_scene(*own, moving->assets, stop, moving);
+        source.own = std::move(own);
+        return source;
+    });
 }
 
 }  // namespace cistula

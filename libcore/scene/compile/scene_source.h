@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/box.h"
 #include "base/error.h"
 #include "scene/assets/assets.h"
 #include "scene/compile/meshes/mesh_edges.h"
@@ -32,6 +33,13 @@ std::string name_of(const SourceSolid& solid);
 
 struct PlacedBodies;
 
+/// What all frames of a scene that changes have in common.
+struct MovingScene {
+    SceneDescription description;
+    SceneAssets assets;
+    Box box;  // around what changes, in all frames, in scene units
+};
+
 struct SceneSource {
     const SceneDescription* description = nullptr;
     std::vector<MaterialDescription> materials;                 // those of the description, then those from mesh files
@@ -41,6 +49,8 @@ struct SceneSource {
     std::vector<std::string> files;                             // as SceneAssets has them
     StopSignal stop;                                            // ends what is done with it by Error (interrupted)
     std::shared_ptr<const PlacedBodies> bodies;                 // the solids in the scene's frame (placed_bodies.h)
+    std::shared_ptr<const MovingScene> moving;                  // null: nothing changes from frame to frame
+    std::shared_ptr<const SceneDescription> own;                // keeps the description of a frame
 };
 
 /// Checks every number that affects the compiled scene, and places the meshes. The assets are the description's, which
@@ -49,6 +59,9 @@ SceneSource gather_scene(const SceneDescription& description, SceneAssets assets
 inline SceneSource gather_scene(const SceneDescription& description, StopSignal stop = {}) {
     return gather_scene(description, load_assets(description, stop), stop);
 }
+
+/// The scene at a frame, of assets that are read and checked once. Throws as gather_scene() does.
+SceneSource gather_frame(const std::shared_ptr<const MovingScene>& moving, int frame, StopSignal stop = {});
 
 template <class Real>
 struct CompiledScene;

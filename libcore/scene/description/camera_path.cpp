@@ -66,13 +66,19 @@ std::optional<dvec3> right_of(const View& view, const dvec3& up, double rounding
     return std::nullopt;
 }
 
+/// The camera with the values that keys give it.
+CameraDescription held_at(const CameraDescription& description, double frame) {
+    return description.at ? description.at(frame) : description;
+}
+
 /// The right just before a frame; just after frame 0, which has none before.
 std::optional<dvec3> right_beside(const CameraDescription& description, int frame, const dvec3& up) {
     const double side = frame == 0 ? 1 : -1;
-    for (double step = 0x1p-32; step <= 1; step *= 2)
-        if (const auto right =
-                right_of(view_at(description, (frame + side * step) * description.time_step), up, clearly_off))
-            return right;
+    for (double step = 0x1p-32; step <= 1; step *= 2) {
+        const double time = frame + side * step;
+        const CameraDescription there = held_at(description, time);
+        if (const auto right = right_of(view_at(there, time * there.time_step), up, clearly_off)) return right;
+    }
     return std::nullopt;
 }
 
@@ -98,16 +104,17 @@ dvec3 axis_across(const View& view) {
     return right;
 }
 
-dvec3 right_along_up(const CameraDescription& description, const CameraFrame& at, const View& view, const dvec3& up) {
-    std::optional<dvec3> right = right_beside(description, at.frame, up);
-    if (!right) right = right_of_azimuth(description, at.time, up);
+dvec3 right_along_up(const CameraDescription& moving, const CameraFrame& at, const View& view, const dvec3& up) {
+    std::optional<dvec3> right = right_beside(moving, at.frame, up);
+    if (!right) right = right_of_azimuth(held_at(moving, at.frame), at.time, up);
     if (!right) right = axis_across(view);
     return normalized(*right - dot(*right, view.direction) * view.direction);
 }
 
 }  // namespace
 
-CameraFrame camera_at(const CameraDescription& description, int frame) {
+CameraFrame camera_at(const CameraDescription& moving, int frame) {
+    const CameraDescription description = held_at(moving, frame);
     CameraFrame result;
     result.frame = frame;
     result.time = frame * description.time_step;
@@ -129,7 +136,7 @@ CameraFrame camera_at(const CameraDescription& description, int frame) {
     camera.position = view.position;
     camera.forward = view.direction;
     const std::optional<dvec3> right = right_of(view, up, 1);
-    camera.right = right ? *right : right_along_up(description, result, view, up);
+    camera.right = right ? *right : right_along_up(moving, result, view, up);
     camera.up = normalized(cross(camera.right, camera.forward));
     camera.tan_half_width = elementary::tan(description.field_of_view * (3.14159265358979323846 / 360));
     return result;
@@ -159,7 +166,7 @@ int degrees_of(double cosine) {
 }  // namespace
 
 std::string camera_turns(const CameraDescription& description, const std::vector<int>& frames) {
-    if (!description.position_path && !description.target_path) return "";
+    if (!description.position_path && !description.target_path && !description.at) return "";
     std::string places;
     size_t count = 0;
     CameraFrame before;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,7 @@ struct MaterialDescription {
     double index = 1;
     glm::dvec3 absorption{0};  // per unit of length
     bool fresnel = false;
+    std::string map;  // of an OBJ's material: the picture that its library names for the color; renders do without
 };
 
 struct MeshData;    // readers/meshes/polygon_mesh.h
@@ -127,6 +129,8 @@ struct CameraDescription {
     double field_of_view = 60;     // horizontal, degrees
     double time_step = 1;          // increase of t per frame
     std::string place = "camera";  // what moves it, for messages: "scene.json: /camera/path", "input.txt:5"
+    /// What it is at a frame, or between two, where keys move it; empty: they do not. Throws Error.
+    std::function<CameraDescription(double frame)> at;
 };
 
 struct FilmDescription {
@@ -145,6 +149,15 @@ struct FrameOfReference {
     std::optional<double> bound;  // the radiance bound, instead of the computed one
 };
 
+struct SceneDescription;
+
+/// What keys change from frame to frame, but for the camera.
+struct Motion {
+    std::vector<int> frames;              // those at keys, or around them, ascending; nothing changes outside of them
+    std::vector<size_t> objects, lights;  // that change
+    std::function<void(SceneDescription&, int frame)> set;  // gives a description a frame's values; throws Error
+};
+
 struct SceneDescription {
     std::string source;  // file name, for messages; "-" for standard input
     FilmDescription film;
@@ -160,6 +173,16 @@ struct SceneDescription {
     std::optional<FrameOfReference> frame;
     bool from_text_input = false;           // read from the text input
     std::optional<uint64_t> texture_bytes;  // that all texels may take; none: default_texture_bytes()
+    std::shared_ptr<const Motion> motion;   // null: no keys change it
+    int shown = 0;                          // the frame that its values are of
+    bool still = false;                     // it stays as that frame has it
 };
+
+/// A description that stays as a frame has it. Throws Error.
+inline SceneDescription at_frame(SceneDescription description, int frame) {
+    if (description.motion) description.motion->set(description, frame);
+    description.still = true;
+    return description;
+}
 
 }  // namespace cistula

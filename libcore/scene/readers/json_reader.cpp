@@ -38,6 +38,41 @@ glm::vec<n, double, glm::defaultp> numbers_of(const JsonValue& value, const Key&
     return numbers;
 }
 
+/// How a value goes from key to key, in the order of their names.
+enum class Interpolation { linear, step, smooth };
+
+/// A value that changes over time.
+struct KeyedValue {
+    std::vector<double> frames;  // ascending
+    std::vector<glm::dvec3> values;
+
+    /// Change per frame at a key: between its neighbors, at the ends to the only one.
+    glm::dvec3 tangent(size_t i) const {
+        const size_t before = i == 0 ? 0 : i - 1;
+        const size_t after = std::min(i + 1, frames.size() - 1);
+        return (values[after] - values[before]) / (frames[after] - frames[before]);
+    }
+
+    glm::dvec3 at(double frame, Interpolation interpolation) const {
+        const auto next = static_cast<size_t>(std::upper_bound(frames.begin(), frames.end(), frame) - frames.begin());
+        if (next == 0) return values.front();
+        const size_t i = next - 1;
+        if (next == frames.size() || frame == frames[i] || interpolation == Interpolation::step) return values[i];
+        const double length = frames[next] - frames[i];
+        const double s = (frame - frames[i]) / length;
+        const glm::dvec3 way = values[next] - values[i];
+        if (interpolation == Interpolation::linear) return values[i] + s * way;
+        const glm::dvec3 leave = length * tangent(i);
+        const glm::dvec3 arrive = length * tangent(next);
+        return values[i] + s * (leave + s * (3.0 * way - 2.0 * leave - arrive + s * (leave + arrive - 2.0 * way)));
+    }
+};
+
+/// A value within a range, where a smooth curve leaves it between keys.
+double held_in(const Range& range, double value) {
+    return std::clamp(value, range.low, range.high) + 0.0;
+}
+
 }  // namespace
 
 std::string found_text(const Json& json) {
@@ -51,11 +86,11 @@ std::string found_text(const Json& json) {
 }
 
 JsonValue JsonValue::item(size_t index) const {
-    return {(*json_)[index], *source_, fmt::format("{}/{}", place_, index)};
+    return {(*json_)[index], *source_, fmt::format("{}/{}", place_, index), clock_};
 }
 
 JsonValue JsonValue::member(const std::string& key) const {
-    return {json_->at(key), *source_, place_of(key)};
+    return {json_->at(key), *source_, place_of(key), clock_};
 }
 
 std::string JsonValue::place_of(std::string_view key) const {
@@ -89,7 +124,10 @@ void JsonValue::fail(const Error& error) const {
 }
 
 void JsonValue::fail_expected(const std::string& expected) const {
-    fail(fmt::format("expected {}, found {}", expected, found_text(*json_)));
+    fail(fmt::format("expected {}, found {}", expected, found_text(*json_)),
+         json_->is_object() && json_->contains("keys")
+             ? "keys are for numbers, points and colors of the camera, lights, objects, materials and what is around"
+             : "");
 }
 
 size_t JsonValue::array_size(size_t least, const std::string& expected) const {
@@ -97,7 +135,36 @@ size_t JsonValue::array_size(size_t least, const std::string& expected) const {
     return json_->size();
 }
 
+template <class Read>
+glm::dvec3 JsonValue::keyed(const Key& key, const Read& read) const {
+    static constexpr Key frame_key{"frame", KeyType::number, {-1e6, 1e6}, {}, false, {}};
+    JsonObject object(*this, keyed_keys);
+    const JsonValue list = object.at("keys");
+    const auto interpolation = static_cast<Interpolation>(std::max(object.read_choice("interpolation"), 0));
+    object.finish();
+    KeyedValue keyed;
+    const size_t count = list.array_size(1, "an array of keys [frame, value]");
+    for (size_t i = 0; i < count; ++i) {
+        const JsonValue one = list.item(i);
+        if (one.array_size(0, "a key [frame, value]") != 2) one.fail_expected("a key [frame, value]");
+        const JsonValue frame = one.item(0);
+        keyed.frames.push_back(JsonValue(frame.json(), *source_, frame.place()).number(frame_key));
+        if (i > 0 && !(keyed.frames[i] > keyed.frames[i - 1]))
+            frame.fail(fmt::format("frame {} stands after frame {}", number_text(keyed.frames[i]),
+                                   number_text(keyed.frames[i - 1])),
+                       "the frames of keys ascend");
+        const JsonValue value = one.item(1);
+        keyed.values.push_back(read(JsonValue(value.json(), *source_, value.place()), key));
+    }
+    clock_->keys.insert(clock_->keys.end(), keyed.frames.begin(), keyed.frames.end());
+    glm::dvec3 value = keyed.at(clock_->frame, interpolation);
+    for (int c = 0; c < 3; ++c) value[c] = held_in(key.range, value[c]);
+    return value;
+}
+
 double JsonValue::number(const Key& key) const {
+    if (is_keyed())
+        return keyed(key, [](const JsonValue& value, const Key& k) { return glm::dvec3{value.number(k)}; }).x;
     double value = 0;
     if (number_from(*json_, key.range, value)) return value;
     fail_expected("a number " + std::string(key.range.above ? "" : "from ") + range_text(key.range));
@@ -129,12 +196,14 @@ int JsonValue::choice(const Key& key) const {
 }
 
 glm::dvec3 JsonValue::color(const Key& key) const {
+    if (is_keyed()) return keyed(key, [](const JsonValue& value, const Key& k) { return value.color(k); });
     double gray = 0;
     if (number_from(*json_, key.range, gray)) return glm::dvec3{gray};
     return numbers_of<3>(*this, key);
 }
 
 glm::dvec3 JsonValue::point(const Key& key) const {
+    if (is_keyed()) return keyed(key, [](const JsonValue& value, const Key& k) { return value.point(k); });
     return numbers_of<3>(*this, key);
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -22,11 +23,20 @@ using Json = nlohmann::ordered_json;  // keeps the order of keys in the file
 /// keys, strings, arrays and objects. Columns count bytes from 1.
 Json parse_json(const std::string& text, const std::string& source);
 
+/// The frame that values which change over time are read for, and the frames of all keys that were read.
+struct KeyClock {
+    double frame = 0;
+    std::vector<double> keys = {};
+};
+
 /// A value and its JSON pointer. A view: tree and source must outlive it.
 class JsonValue {
   public:
-    JsonValue(const Json& json, const std::string& source, std::string place = {})
-        : json_(&json), source_(&source), place_(std::move(place)) {}
+    JsonValue(const Json& json, const std::string& source, std::string place = {}, KeyClock* clock = nullptr)
+        : json_(&json), source_(&source), place_(std::move(place)), clock_(clock) {}
+
+    /// This value, in which numbers, points and colors may change over time; the clock must outlive it.
+    JsonValue over_time(KeyClock& clock) const { return {*json_, *source_, place_, &clock}; }
 
     const Json& json() const { return *json_; }
     const std::string& place() const { return place_; }
@@ -34,7 +44,9 @@ class JsonValue {
     JsonValue item(size_t index) const;
     JsonValue member(const std::string& key) const;
     /// The member `key` where its value is at hand; looking it up takes time that grows with their number.
-    JsonValue member(const std::string& key, const Json& value) const { return {value, *source_, place_of(key)}; }
+    JsonValue member(const std::string& key, const Json& value) const {
+        return {value, *source_, place_of(key), clock_};
+    }
 
     /// JSON pointer of a key of this object, present or not; a very long key is cut, since the pointer is for messages.
     std::string place_of(std::string_view key) const;
@@ -57,7 +69,8 @@ class JsonValue {
     /// Length of an array, which must be `least` or more; `expected` is for the message.
     size_t array_size(size_t least, const std::string& expected) const;
 
-    /// The value as the type that a table asks for; `key` gives range and choices.
+    /// The value as the type that a table asks for; `key` gives range and choices. A number, a color or a point with
+    /// keys is that of the clock's frame.
     double number(const Key& key) const;
     int64_t whole(const Key& key) const;
     bool boolean(const Key& key) const;
@@ -68,9 +81,17 @@ class JsonValue {
     glm::dvec2 pair(const Key& key) const;
 
   private:
+    bool is_keyed() const {
+        return clock_ && json_->is_object() && (json_->contains("keys") || json_->contains("interpolation"));
+    }
+    /// The value with keys at the clock's frame; read(value, key) reads that of a key.
+    template <class Read>
+    glm::dvec3 keyed(const Key& key, const Read& read) const;
+
     const Json* json_;
     const std::string* source_;
     std::string place_;
+    KeyClock* clock_;
 };
 
 /// An object whose keys are listed in a table. The constructor throws unless it is an object, and for keys that are

@@ -1,7 +1,9 @@
 #include "scene/readers/scene_formats.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -209,9 +211,103 @@ int index_of_name(const JsonValue& value, const NameIndices& indices, const std:
     value.fail(fmt::format("unknown {} {}", kind, found_text(value.json())), suggestion(name, known, kind + "s"));
 }
 
+namespace {
+
+/// A scene file, and which parts of it keys change.
+struct JsonScene {
+    Json json;
+    std::string label, base_dir;
+    NameIndices textures = {}, materials = {};
+    std::vector<std::pair<std::string, size_t>> moving_materials = {};
+    std::vector<size_t> moving_objects = {}, moving_lights = {};
+
+    JsonValue part(const char* name, KeyClock& clock) const {
+        return JsonValue(json, label).over_time(clock).member(name);
+    }
+    CameraDescription camera(KeyClock& clock) const {
+        CameraDescription camera = read_camera(part("camera", clock));
+        camera.place = label + (clock.keys.empty() ? ": /camera/path" : ": /camera");
+        return camera;
+    }
+    void read_around(SceneDescription& scene, KeyClock& clock) const {
+        if (json.contains("ambient")) scene.ambient = part("ambient", clock).color(*scene_keys.find("ambient"));
+        if (json.contains("background"))
+            scene.background = part("background", clock).color(*scene_keys.find("background"));
+    }
+    MaterialDescription material(const std::string& name, const JsonValue& value) const {
+        MaterialDescription material = read_material(value, textures);
+        material.name = name;
+        return material;
+    }
+
+    /// Gives what changes the values of a frame.
+    void set(SceneDescription& scene, int frame) const {
+        KeyClock clock{static_cast<double>(frame)};
+        try {
+            read_around(scene, clock);
+            for (const auto& [name, index] : moving_materials)
+                scene.materials[index] = material(name, part("materials", clock).member(name));
+            for (const size_t i : moving_objects) {
+                ObjectDescription object =
+                    read_json_object(part("objects", clock).item(i), {scene, materials, base_dir});
+                if (auto* mesh = std::get_if<MeshObject>(&object.shape)) {  // from a program's array, if it was
+                    const auto& given = std::get<MeshObject>(scene.objects[i].shape);
+                    mesh->data = given.data;
+                    mesh->file = given.file;
+                }
+                scene.objects[i] = std::move(object);
+            }
+            for (const size_t i : moving_lights) scene.lights[i] = read_light(part("lights", clock).item(i));
+        } catch (const Error& error) {
+            throw error.at(fmt::format("frame {}", frame));
+        }
+        scene.shown = frame;
+    }
+};
+
+/// The frames at keys, or before and after those that lie between two.
+std::vector<int> frames_around(const std::vector<double>& keys) {
+    std::vector<int> frames;
+    for (const double key : keys) {
+        frames.push_back(static_cast<int>(std::floor(key)));
+        frames.push_back(static_cast<int>(std::ceil(key)));
+    }
+    std::sort(frames.begin(), frames.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    return frames;
+}
+
+/// Calls read(); whether it read keys.
+template <class Read>
+bool reads_keys(KeyClock& clock, const Read& read) {
+    const size_t before = clock.keys.size();
+    read();
+    return clock.keys.size() > before;
+}
+
+/// Reads the objects and the lights.
+void read_bodies(JsonObject& keys, JsonScene& file, SceneDescription& scene, KeyClock& clock) {
+    const JsonValue objects = keys.at("objects").over_time(clock);
+    const ObjectContext context{scene, file.materials, file.base_dir};
+    const size_t object_count = objects.array_size(0, "an array of objects");
+    for (size_t i = 0; i < object_count; ++i)
+        if (reads_keys(clock, [&] { scene.objects.push_back(read_json_object(objects.item(i), context)); }))
+            file.moving_objects.push_back(i);
+    require_different_names(scene.objects, objects);
+    if (!keys.has("lights")) return;
+    const JsonValue lights = keys.at("lights").over_time(clock);
+    const size_t light_count = lights.array_size(0, "an array of lights");
+    for (size_t i = 0; i < light_count; ++i)
+        if (reads_keys(clock, [&] { scene.lights.push_back(read_light(lights.item(i))); }))
+            file.moving_lights.push_back(i);
+}
+
+}  // namespace
+
 SceneDescription read_json_scene(const std::string& text, const std::string& label, const std::string& base_dir) {
-    const Json json = parse_json(text, label);
-    const JsonValue value(json, label);
+    const auto file = std::make_shared<JsonScene>(JsonScene{parse_json(text, label), label, base_dir});
+    const JsonValue value(file->json, file->label);
+    KeyClock clock;
     SceneDescription scene;
     JsonObject keys(value, scene_keys);
     std::string schema;
@@ -219,38 +315,38 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
     keys.read("depth", scene.depth);
     keys.read("cutoff", scene.cutoff);
     keys.read("contact", scene.contact);
-    keys.read("ambient", scene.ambient);
-    keys.read("background", scene.background);
+    if (keys.has("ambient") || keys.has("background")) file->read_around(scene, clock);
     if (keys.has("film")) scene.film = read_film(keys.at("film"));
     if (keys.has("camera")) {
-        scene.camera = read_camera(keys.at("camera"));
-        scene.camera.place = label + ": /camera/path";
+        KeyClock of_camera;
+        scene.camera = file->camera(of_camera);
+        if (!of_camera.keys.empty())
+            scene.camera.at = [file](double frame) {
+                KeyClock at{frame};
+                return file->camera(at);
+            };
     }
     if (keys.has("frame")) scene.frame = read_frame(keys.at("frame"));
-    NameIndices textures, materials;
     if (keys.has("textures"))
         for_each_name(keys.at("textures"), "texture", [&](const std::string& name, const JsonValue& texture) {
-            textures[name] = static_cast<int>(scene.textures.size());
+            file->textures[name] = static_cast<int>(scene.textures.size());
             scene.textures.push_back(read_texture(texture, base_dir));
             scene.textures.back().name = name;
         });
     if (keys.has("materials"))
-        for_each_name(keys.at("materials"), "material", [&](const std::string& name, const JsonValue& material) {
-            materials[name] = static_cast<int>(scene.materials.size());
-            scene.materials.push_back(read_material(material, textures));
-            scene.materials.back().name = name;
-        });
-    const JsonValue objects = keys.at("objects");
-    const ObjectContext context{scene, materials, base_dir};
-    const size_t object_count = objects.array_size(0, "an array of objects");
-    for (size_t i = 0; i < object_count; ++i) scene.objects.push_back(read_json_object(objects.item(i), context));
-    require_different_names(scene.objects, objects);
-    if (keys.has("lights")) {
-        const JsonValue lights = keys.at("lights");
-        const size_t light_count = lights.array_size(0, "an array of lights");
-        for (size_t i = 0; i < light_count; ++i) scene.lights.push_back(read_light(lights.item(i)));
-    }
+        for_each_name(keys.at("materials").over_time(clock), "material",
+                      [&](const std::string& name, const JsonValue& material) {
+                          const size_t index = scene.materials.size();
+                          file->materials[name] = static_cast<int>(index);
+                          if (reads_keys(clock, [&] { scene.materials.push_back(file->material(name, material)); }))
+                              file->moving_materials.emplace_back(name, index);
+                      });
+    read_bodies(keys, *file, scene, clock);
     keys.finish();
+    if (!clock.keys.empty())
+        scene.motion = std::make_shared<const Motion>(
+            Motion{frames_around(clock.keys), file->moving_objects, file->moving_lights,
+                   [file](SceneDescription& changed, int frame) { file->set(changed, frame); }});
     return scene;
 }
 

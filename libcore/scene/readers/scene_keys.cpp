@@ -22,6 +22,8 @@ constexpr std::string_view solid_choices[] = {"tetrahedron", "cube", "octahedron
 constexpr std::string_view filter_choices[] = {"nearest", "bilinear"};
 constexpr std::string_view falloff_choices[] = {"none", "inverse-square"};
 
+constexpr std::string_view interpolation_choices[] = {"linear", "step", "smooth"};
+
 constexpr bool required = true;
 
 constexpr Key whole(std::string_view name, Range range, std::string_view fallback, bool needed = false) {
@@ -180,6 +182,11 @@ constexpr Key frame_list[] = {
     number("bound", {0, most, true}, {}),
 };
 
+constexpr Key keyed_list[] = {
+    other("keys", required),
+    choice("interpolation", interpolation_choices, "\"linear\""),
+};
+
 }  // namespace
 
 constexpr KeyTable scene_keys{"scene", scene_list};
@@ -198,13 +205,14 @@ constexpr KeyTable triangle_list_keys{"triangle_list", triangle_list_list};
 constexpr KeyTable mesh_keys{"mesh", mesh_list};
 constexpr KeyTable light_keys{"light", light_list};
 constexpr KeyTable frame_keys{"frame", frame_list};
+constexpr KeyTable keyed_keys{"keyed", keyed_list};
 constexpr std::span<const std::string_view> platonic_names{solid_choices};
 
 std::span<const KeyTable* const> all_key_tables() {
     static constexpr const KeyTable* tables[] = {
         &scene_keys,           &film_keys,     &camera_keys, &path_keys,        &cylindrical_keys, &texture_file_keys,
         &texture_checker_keys, &material_keys, &solid_keys,  &edge_lights_keys, &quad_keys,        &triangles_keys,
-        &triangle_list_keys,   &mesh_keys,     &light_keys,  &frame_keys};
+        &triangle_list_keys,   &mesh_keys,     &light_keys,  &frame_keys,  &keyed_keys};
     return tables;
 }
 

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "base/atomic_file.h"
 #include "scene/description/mesh_source.h"
 #include "testing/support/render_program.h"
 #include "verify/scenes/generated_scene.h"
@@ -43,7 +44,7 @@ TEST(InterruptDeathTest, TheFirstSignalSetsTheFlag) {
             testing::ExitedWithCode(0), "");
 }
 
-TEST(InterruptDeathTest, TheSecondSignalKills) {
+TEST(InterruptDeathTest, TheSecondSignalEndsTheProgramAtOnce) {
     for (const int number : {SIGINT, SIGTERM, SIGHUP})
         EXPECT_EXIT(
             {
@@ -55,7 +56,24 @@ TEST(InterruptDeathTest, TheSecondSignalKills) {
                 std::raise(number);
                 report(false);
             },
-            testing::KilledBySignal(number), "");
+            testing::ExitedWithCode(130), "");
+}
+
+TEST(InterruptDeathTest, NoTemporaryIsLeft) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.txt");
+    EXPECT_EXIT(
+        {
+            default_signals();
+            const InterruptGuard outer("render-merge");
+            { const InterruptGuard inner; }  // is the same one
+            const AtomicFile file(path);
+            if (scratch.names().empty()) report(false);
+            std::raise(SIGTERM);
+            report(false);
+        },
+        testing::ExitedWithCode(130), "render-merge: interrupted");
+    EXPECT_TRUE(scratch.names().empty());
 }
 
 /// Sends this process a signal from another one.
@@ -89,7 +107,7 @@ TEST(InterruptDeathTest, BeforeAnythingRendersItEndsTheProgramAtOnce) {
             std::raise(SIGINT);
             report(false);
         },
-        testing::ExitedWithCode(130), "render: interrupted; nothing was written");
+        testing::ExitedWithCode(130), "render: interrupted");
 }
 
 TEST(InterruptDeathTest, IgnoredSignalsStayIgnored) {

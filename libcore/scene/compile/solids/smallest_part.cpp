@@ -132,7 +132,13 @@ class SmallestPartSearch {
 }  // namespace
 
 SmallestPart smallest_part(const SceneSource& source) {
-    return SmallestPartSearch(source).run();
+    if (!source.moving) return SmallestPartSearch(source).run();
+    SmallestPart smallest;
+    for (const int frame : source.moving->description.motion->frames) {
+        SmallestPart part = SmallestPartSearch(gather_frame(source.moving, frame, source.stop)).run();
+        if (part.share < smallest.share) smallest = {part.share, fmt::format("{} at frame {}", part.what, frame)};
+    }
+    return smallest;
 }
 
 SmallestPart smallest_part(const SceneDescription& description) {
