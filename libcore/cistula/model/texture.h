@@ -27,20 +27,12 @@ CISTULA_INLINE uint32_t repeated(Real i, uint32_t n) {
     return (((n & (n - 1)) == 0) & (magnitude(i) < few)) ? uint32_t(int32_t(i)) & (n - 1) : any_remainder(i, n);
 }
 
-/// A number that is whole, not negative and less than 2^24 as an integer.
-CISTULA_INLINE uint32_t whole_of(float a) {
-    return uint32_t(a);
-}
-CISTULA_INLINE uint32_t whole_of(double a) {
-    return uint32_t(a);
-}
-
 /// The texel at an integer i of an axis that is clamped or mirrored, kept out of line.
 template <class Real>
 CISTULA_NOINLINE IndexOf<Real> wrapped_inward(Real i, uint32_t n, TextureWrap wrap) {
     using T = ScalarOf<Real>;
     using Index = IndexOf<Real>;
-    if (wrap == TextureWrap::clamp) return whole_of(clamped(i, Real(0), Real(T(n - 1))));
+    if (wrap == TextureWrap::clamp) return Index(whole_of(clamped(i, Real(0), Real(T(n - 1)))));
     const Index place = repeated(i, 2 * n);
     return select(place < Index(int(n)), place, Index(int(2 * n - 1)) - place);
 }
