@@ -7,6 +7,7 @@
 
 #include "backend_embree/embree/embree_renderer.h"
 #include "base/atomic_file.h"
+#include "base/file_bytes.h"
 #include "base/suggest.h"
 #include "image/exr/exr.h"
 #include "image/picture/picture_io.h"
@@ -69,8 +70,15 @@ nb::object target_of(const Image& image) {
     return told;
 }
 
-void save(Image& image, const std::filesystem::path& file) {
-    const std::string path = file.string();
+/// The name of a file to be written. Throws Error (usage) for another suffix.
+std::string named(const std::filesystem::path& path, const char* suffix) {
+    if (lower_extension(path.string()) != suffix)
+        throw Error(ErrorKind::usage, fmt::format("`path`={}: must be named *{}", path.string(), suffix));
+    return path.string();
+}
+
+void save(Image& image, const std::filesystem::path& given) {
+    const std::string path = named(given, ".exr");
     {
         const nb::gil_scoped_release free;
         image.clamped = 0;
@@ -263,9 +271,9 @@ void bind_image(nb::module_& m) {
             [](const Image& image, const std::filesystem::path& path, double exposure, const std::string& view,
                double bloom) {
                 const nb::gil_scoped_release free;
-                write_file_atomically(path.string(), png_of(image, {{"exposure", fmt::format("{}", exposure)},
-                                                                    {"view", view},
-                                                                    {"bloom", fmt::format("{}", bloom)}}));
+                write_file_atomically(named(path, ".png"), png_of(image, {{"exposure", fmt::format("{}", exposure)},
+                                                                          {"view", view},
+                                                                          {"bloom", fmt::format("{}", bloom)}}));
             },
             "path"_a, "exposure"_a = 0.0, "view"_a = "srgb", "bloom"_a = 0.0,
             nb::sig("def preview(self, path: str | os.PathLike[str], exposure: float = 0.0, view: str = 'srgb', bloom: "
