@@ -232,12 +232,12 @@ Explorer::Page Explorer::page(const std::string& start, double megabytes,
                                     megabytes, megabytes + (bytes - room) / 1e6),
                         "give more, or a smaller `resolution` or `depth`");
         const int fitting = std::clamp(static_cast<int>(std::ceil(step * std::sqrt(bytes / room))), 1, coarsest);
-        if (fits && (pass > 2 || fitting >= step)) {
+        if (fits && (pass > 4 || fitting >= step)) {
             std::string html(explorer_page);
             constexpr std::string_view place = "/*DATA*/";
             return {html.replace(html.find(place), place.size(), start.substr(0, start.size() - 1) + data), step};
         }
-        step = pass > 2 ? step + 1 : fitting;
+        step = pass > 4 ? step + 1 : fitting;
     }
 }
 
