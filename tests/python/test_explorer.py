@@ -224,8 +224,8 @@ def test_the_grid_fills_the_size_and_python_writes_the_same_page(page: Path, sou
 
 
 @pytest.mark.parametrize(("options", "message"), [
-    (["--explore", "p.html", "--pixel", "1,2"], "--explore excludes --pixel"),
-    (["--explore", "p.html", "-o", "a.exr"], "--output has no place here"),
+    (["--explore", "p.html", "--pixel", "1,2"], "--pixel excludes --explore"),
+    (["--explore", "p.html", "-o", "a.exr"], "-o has no place here"),
     (["--explore", "p.html", "-f", "0-2"], "name that one"),
     (["--explore-mb", "3"], "requires --explore"),
     (["--explore", "p.html", "--explore-mb", "0.02"], "--explore-mb 0.02: the picture and the coarsest grid"),
@@ -239,10 +239,11 @@ def test_wrong_options_are_refused(options: list[str], message: str, source: Pat
     assert not (tmp_path / "p.html").exists()
 
 
-def test_an_interruption_ends_it_and_leaves_no_file(source: Path, programs: Path, tmp_path: Path) -> None:
-    process = subprocess.Popen([programs / "render", source / "scenes" / "infinity.json", "--depth", "64", "--explore", "p.html", "--explore-mb", "900"],
-                               cwd=tmp_path)
-    time.sleep(2)
+@pytest.mark.parametrize("size", ["1280x720", "320x180"])  # while it renders, while it follows rays
+def test_an_interruption_ends_it_and_leaves_no_file(size: str, source: Path, programs: Path, tmp_path: Path) -> None:
+    process = subprocess.Popen([programs / "render", source / "scenes" / "infinity.json", "--res", size, "--depth", "64", "--explore", "p.html",
+                                "--explore-mb", "900"], cwd=tmp_path)
+    time.sleep(3)
     assert process.poll() is None
     process.send_signal(signal.SIGINT)
     assert process.wait(10) == 130
@@ -399,7 +400,7 @@ def test_the_widget_asks_for_any_pixel(quiet: Browser, source: Path, page: Path,
     quiet.key("ArrowRight")
     answer({"x": 33, "y": 18})
     quiet.wait("document.querySelector('article h2')?.innerText.includes('Pixel 33, 18')")
-    widget.handler(widget, {"x": 64, "y": 18}, [])
+    widget.handler(widget, {"x": "left", "y": 18}, [])
     assert "error" in widget.sent.pop()
 
 

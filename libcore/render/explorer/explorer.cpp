@@ -8,7 +8,9 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
 #include <nlohmann/json.hpp>
 
 #include "base/file_bytes.h"
@@ -54,9 +56,10 @@ std::string ray(const PixelBranch& b, int parent, const Film& film, const glm::d
                     color_json(radiance_of(b.ledger, film)), met ? light_list(b.surface, film) : "[]");
     if (b.end <= BranchEnd::background) {
         const glm::dvec3 at = b.end == BranchEnd::background ? b.direction : b.origin + b.direction * b.distance - eye;
-        text += fmt::format(",[{:.4g},{:.4g},{:.4g}],{}", at.x, at.y, at.z, met ? b.surface.solid : b.visible_light);
+        text += fmt::format(",[{:.4g},{:.4g},{:.4g}]", at.x, at.y, at.z);
     }
-    if (met) text += fmt::format(",{}", surface(b.surface));
+    if (b.end == BranchEnd::light) text += fmt::format(",{}", b.visible_light);
+    if (met) text += fmt::format(",{},{}", b.surface.solid, surface(b.surface));
     return text + "]";
 }
 
@@ -198,17 +201,28 @@ Explorer::Page Explorer::page(const std::string& start, double megabytes,
     int step = coarsest;
     for (int pass = 1;; ++pass) {
         std::vector<std::string> rows(static_cast<size_t>((height - 1) / step + 1));
-        tbb::parallel_for(size_t{0}, rows.size(), [&](size_t row) {
+        std::atomic<bool> failed{false};
+        std::exception_ptr failure;  // TBB 2021.8 dies by a signal if one passes its loop here
+        const auto fill = [&](size_t row) {
             const int y = std::min(static_cast<int>(row) * step + step / 2, height - 1);
             std::string list;
-            for (int left = 0; left < width; left += step) {
+            for (int left = 0; left < width && !failed; left += step) {
                 stop.check();
                 list += left == 0 ? "[" : ",";
-                tbb::this_task_arena::isolate(  // from other rows, which would use the same renderer
-                    [&] { list += pixel(*renderers.local(), std::min(left + step / 2, width - 1), y, stop); });
+                list += pixel(*renderers.local(), std::min(left + step / 2, width - 1), y, stop);
             }
             rows[row] = packed(list + "]");
+        };
+        tbb::parallel_for(size_t{0}, rows.size(), [&](size_t row) {
+            tbb::this_task_arena::isolate([&] {  // from other rows, which would use the same renderer
+                try {
+                    fill(row);
+                } catch (...) {
+                    if (!failed.exchange(true)) failure = std::current_exception();
+                }
+            });
         });
+        if (failure) std::rethrow_exception(failure);
         const std::string data = fmt::format(R"(,"step":{},"rows":["{}"]}})", step, fmt::join(rows, R"(",")"));
         const auto bytes = static_cast<double>(data.size());
         const bool fits = bytes <= room;
@@ -218,12 +232,12 @@ Explorer::Page Explorer::page(const std::string& start, double megabytes,
                                     megabytes, megabytes + (bytes - room) / 1e6),
                         "give more, or a smaller `resolution` or `depth`");
         const int fitting = std::clamp(static_cast<int>(std::ceil(step * std::sqrt(bytes / room))), 1, coarsest);
-        if (fits && (pass > 2 || fitting >= step)) {
+        if (fits && (pass > 4 || fitting >= step)) {
             std::string html(explorer_page);
             constexpr std::string_view place = "/*DATA*/";
             return {html.replace(html.find(place), place.size(), start.substr(0, start.size() - 1) + data), step};
         }
-        step = pass > 2 ? step + 1 : fitting;
+        step = pass > 4 ? step + 1 : fitting;
     }
 }
 

@@ -159,17 +159,15 @@ function explore(root, data, ask, linked) {
   const groups = new Map();
   for (const light of [...data.lights, ...data.visible]) {
     light.group = light.place || light.name;
-    groups.set(light.group, groups.get(light.group) || {name: light.name, count: 0});
+    groups.set(light.group, light.name.replace(/ edge \d+ light \d+$/, "'s edges"));
   }
-  for (const light of data.lights) ++groups.get(light.group).count;
 
   picture.src = "data:image/png;base64," + data.picture;
   for (const stage of root.querySelectorAll(".stage")) stage.style.aspectRatio = `${width} / ${height}`;
   $(".about").textContent = `${data.scene}, frame ${data.frame}, ${width} × ${height}, depth ${data.depth}, ${data.precision}; scene ${data.hash.slice(0, 12)}; Cistula ${data.version}`;
   $(".grid").textContent = (step > 1 ? `One pixel in ${step} × ${step} has its rays here: ${grid[0] * grid[1]} pixels.` : "")
     + (data.samples > 1 ? ` The picture has ${data.samples} samples a pixel; the rays are those through its middle.` : "");
-  $(".lights").innerHTML = [...groups].map(([key, {name, count}]) => `<label><input type="checkbox" checked value="${escaped(key)}">${
-    count > 1 ? escaped(name.split(" edge ")[0]) + `: ${count} lights` : escaped(name)}</label>`).join("");
+  $(".lights").innerHTML = [...groups].map(([key, name]) => `<label><input type="checkbox" checked value="${escaped(key)}">${escaped(name)}</label>`).join("");
   const space = new Space($(".space"), data, picture), least = () => +$(".least").value;
 
   const draw = () => pixels.length && space.draw(pixels.map(p => p.tree).sort((a, b) => (a === pixels[active].tree) - (b === pixels[active].tree)),
