@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import os
 import pickle
 import sys
 from collections.abc import Callable
@@ -75,6 +76,9 @@ def test_textures_that_a_wheel_reads_are_those_of_the_library(name: str, dtype: 
     monkeypatch.setattr(_core, "reads_all_pictures", False)
     ours = cistula.Scene.from_dict(scene, folder=tmp_path)
     assert ours.render().hash == native.render().hash
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    assert _core.run_program("render", [b"-q", b"-o", os.fsencode(tmp_path / "a.exr"), os.fsencode(tmp_path / "scene.json")]) == 0
+    assert cistula.compare(tmp_path / "a.exr", native.render(), layers="R,G,B,A", fail=0)
     monkeypatch.setitem(sys.modules, "OpenImageIO", None)
     with pytest.raises(cistula.FileError, match="pip install openimageio"):
         cistula.Scene.from_dict(scene, folder=tmp_path)
