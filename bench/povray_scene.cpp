@@ -35,8 +35,11 @@ void check(const SceneDescription& scene, const SceneSource& source) {
         if (m.absorption != dvec3(0)) refuse("material " + m.name + " absorbs; its absorption must be 0");
         if (m.tint != dvec3(1)) refuse("material " + m.name + " tints what passes; its tint must be white");
         if (!is_gray(m.specular_color)) refuse("material " + m.name + " has a colored highlight; it must be gray");
-        if (m.texture >= 0 && !scene.textures[size_t(m.texture)].file.empty())
-            refuse("material " + m.name + " has a texture from a file; it must be a checker");
+        if (m.texture < 0) continue;
+        const TextureDescription& texture = scene.textures[size_t(m.texture)];
+        if (!texture.file.empty() || texture.wrap != std::array<TextureWrap, 2>{})
+            refuse("material " + m.name +
+                   " has a texture from a file, or one that does not repeat; it must be a checker");
     }
     if (!is_gray(scene.ambient)) refuse("the ambient color must be gray");
     for (const LightDescription& light : scene.lights)

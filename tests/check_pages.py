@@ -51,7 +51,7 @@ into() { "${@:2}" >"$1" 2>&1 || :; }
 trap 'echo "$PAGE:$LINENO: this command fails" >&2' ERR
 """
 PROGRAMS = ("render", "render-compare", "render-compare suite", "render-merge", "render-verify",
-            "cistula farm", "cistula report", "cistula view")
+            "cistula farm", "cistula import", "cistula report", "cistula view")
 OPTION = re.compile(r"(?<![\w.-])--?[a-z][a-z0-9-]*")
 CALL = re.compile(r"(?:^|(?<=[\s`]))(?:[\w./]+/)?(render-compare suite|render(?:-[a-z]+)?|cistula [a-z]+)(?= |$)([^`;&#]*)")
 
@@ -106,6 +106,8 @@ class Check:
         self.options = {program: self.listed(program) for program in PROGRAMS}
         self.options["render"].add("--aov")
         self.options["cistula farm"] |= self.options["render"]
+        self.options |= {"cistula render": self.options["render"], "cistula verify": self.options["render-verify"],
+                         "cistula compare": self.options["render-compare"] | self.options["render-compare suite"]}
         scripts = [file for folder in ("bench", "cmake", "python", "tests", "docs") for file in (root / folder).rglob("*")
                    if file.suffix in ("", ".py", ".sh", ".cmake") and file.is_file()]
         self.anywhere: set[str] = OF_OTHERS.union(*self.options.values(), *(OPTION.findall(file.read_text()) for file in scripts))

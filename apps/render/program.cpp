@@ -216,7 +216,7 @@ void report_pixel(const RenderCommand& request) {
 }
 
 void write_explorer(const RenderCommand& request) {
-    const SceneDescription description = read_scene(request);
+    const SceneDescription description = read_frame(request);
     FrameSettings settings = frame_settings(request, description);
     const CameraFrame camera = camera_at(description.camera, request.frames.empty() ? 0 : request.frames.front());
     RenderProgress progress;  // must outlive the guard

@@ -114,7 +114,7 @@ def read_mesh(path: Path) -> Mesh:
              for i, (name, vertices, triangles, uvs, keys, picture, material) in enumerate(found)]
     joined: dict[str, list[Part]] = {}
     for number, part in enumerate(parts):  # open parts of a material may close one another, as render has it
-        joined.setdefault(str(number) if part.is_closed() else "open " + part.material, []).append(part)
+        joined.setdefault(str(number) if len(parts) == 1 or part.is_closed() else "open " + part.material, []).append(part)
     remarks = [re.sub(r"(?<=here: )'map_Kd'(, |$)|, 'map_Kd'", "", text) for text in remarks]  # here it has a meaning
     return Mesh([join(some) for some in joined.values()], [text for text in remarks if not text.endswith("here: ")], files)
 
@@ -156,15 +156,12 @@ def surroundings(points: Array, up_axis: str) -> dict[str, Any]:
     x, y, z = np.stack([across, np.cross(away, across), away]) @ (points - middle).T
     tangent = math.tan(math.radians(FOV / 2))
     distance = 1.25 * max(np.max(z + np.abs(x) / tangent), np.max(z + np.abs(y) * SIZE[0] / SIZE[1] / tangent))
-    digits = 3 - math.floor(math.log10(radius))
+    digits = 4 - math.floor(math.log10(radius))
 
     def rounded(point: Array) -> list[float]:
         return [round(float(p), digits) + 0.0 for p in point]
-    ground = middle + up * float((low - middle) @ up)
+    ground = middle + up * ((low - middle) @ up - radius / 1000)  # so that nothing nearly touches it
     corners = [rounded(ground + 4 * radius * (a * right + b * forward)) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    level = int(np.argmax(up))
-    for corner in corners:
-        corner[level] = float(low[level])  # exactly where the lowest points are, so that flat ones touch
     return {"camera": {"position": rounded(middle + distance * away), "target": rounded(middle), "up": [int(u) for u in up], "fov": FOV},
             "floor": corners, "light": rounded(middle + radius * (np.array([-2, -3, 4]) @ np.stack([right, forward, up])))}
 

@@ -100,22 +100,24 @@ std::string png_of(const Image& image, const Keywords& view) {
         viewed(to_color(image.film, transparent), request.view, static_cast<uint32_t>(image.film.full_height)));
 }
 
-Explorer explorer_of(const Image& image) {
-    return {image.scene->scene(), camera_at(image.scene->description().camera, image.frame), image.settings};
+Explorer explorer_of(const Image& image, StopSignal stop) {
+    const SceneHandle& scene = *image.scene;
+    return {scene.scene().at(image.frame, stop), camera_at(scene.description().camera, image.frame), image.settings};
 }
 
-nb::object explore(Self self, const std::optional<std::string>& path, double mb) {
+nb::object explore(Self self, const std::optional<std::filesystem::path>& path, double mb) {
     const Image& image = image_of(self);
-    const SceneDescription& description = image.scene->description();
     if (image.film.rect.width != image.film.full_width || image.film.rect.height != image.film.full_height)
         throw Error(ErrorKind::usage, "the explorer shows whole frames, and this is a crop; render it without `crop`");
     std::string text;
     std::atomic<bool> stop{false};
     run_interruptibly(stop, [&] {
-        const Explorer explorer = explorer_of(image);
+        const SceneDescription description = at_frame(image.scene->description(), image.frame);
+        const Explorer explorer = explorer_of(image, stop);
         text = explorer.start(description.source, wireframes(gather_scene(description, stop)), image.film);
-        const auto make = [&] { return make_embree_renderer(image.scene->scene()); };
-        if (path) write_file_atomically(*path, explorer.page(text, mb, make, stop).html);
+        const Scene scene = image.scene->scene().at(image.frame, stop);
+        const auto make = [&] { return make_embree_renderer(scene); };
+        if (path) write_file_atomically(path->string(), explorer.page(text, mb, make, stop).html);
     });
     if (path) return nb::none();
     return nb::module_::import_("cistula.explorer").attr("widget")(self, text);
@@ -124,8 +126,9 @@ nb::object explore(Self self, const std::optional<std::string>& path, double mb)
 std::string explorer_rays(const Image& image, int x, int y) {
     std::string text;
     std::atomic<bool> stop{false};
-    run_interruptibly(
-        stop, [&] { text = explorer_of(image).pixel(*LentRenderer(image.scene, Backend::embree, {}), x, y, stop); });
+    run_interruptibly(stop, [&] {
+        text = explorer_of(image, stop).pixel(*LentRenderer(image.scene, Backend::embree, {}), x, y, stop);
+    });
     return text;
 }
 
@@ -278,7 +281,7 @@ void bind_image(nb::module_& m) {
             "Writes the PNG that `render --preview` writes: 8 bits, sRGB; exposure in stops, view \"srgb\", \"filmic\" "
             "or one of $OCIO.")
         .def("explore", explore, "path"_a.none() = nb::none(), nb::kw_only(), "mb"_a = 5.0,
-             nb::sig("def explore(self, path: str | None = None, *, mb: float = 5.0) -> typing.Any"),
+             nb::sig("def explore(self, path: str | os.PathLike[str] | None = None, *, mb: float = 5.0) -> typing.Any"),
              "Writes the page that `render --explore` writes, of at most `mb` megabytes: a click on a pixel shows its "
              "rays. "
              "Without a path, in a notebook: a widget that does, which asks for any pixel.")

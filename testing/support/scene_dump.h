@@ -68,7 +68,8 @@ class SceneDump {
         line("camera", s.camera.position, s.camera.target, s.camera.up, s.camera.field_of_view, s.camera.time_step);
         line("paths", s.camera.position_path, s.camera.target_path);
         for (const auto& t : s.textures)
-            line("texture", t.name, t.file, t.checker[0], t.checker[1], t.bilinear, t.repeat, t.colorspace, t.strict);
+            line("texture", t.name, t.file, t.checker[0], t.checker[1], t.bilinear, t.repeat, int(t.wrap[0]),
+                 int(t.wrap[1]), t.colorspace, t.strict);
         for (const auto& m : s.materials)
             line("material", m.name, m.color, m.texture, m.ambient, m.diffuse, m.specular, m.specular_color, m.exponent,
                  m.reflection, m.transmission, m.tint, m.index, m.absorption, m.fresnel);

@@ -159,6 +159,10 @@ class Coverage {
             note(t.file.empty(), "checker");
             note(!t.file.empty() && t.bilinear, "picture, bilinear");
             note(!t.file.empty() && !t.bilinear, "picture, nearest");
+            for (const TextureWrap wrap : t.wrap) {
+                note(wrap == TextureWrap::clamp, "clamped texture");
+                note(wrap == TextureWrap::mirror, "mirrored texture");
+            }
         }
         if (const auto* solid = std::get_if<SolidObject>(&object.shape)) {
             note(true, platonic_name(solid->solid));
@@ -324,7 +328,8 @@ void check_coverage(const std::string& folder) {
              "falloff of lights on edges", "light on a plane", "light on a corner of planes", "light on a triangle",
              "light on an edge of triangles", "light in a solid", "shared face of both kinds", "no ambient light",
              "mesh given by planes", "black background", "camera on a path", "target on a path", "far camera",
-             "pinned frame", "pinned bound", "large units", "convex solids only"}},
+             "pinned frame", "pinned bound", "large units", "convex solids only", "clamped texture",
+             "mirrored texture"}},
         {4, {"faces in one place of planes", "faces in one place of both kinds", "lights on edges that do not light",
              "camera in several solids", "a tree over convex solids apart", "small units"}}};
     // clang-format on

@@ -5,6 +5,7 @@
 #include "render/scene.h"
 #include "scene/compile/solids/placed_bodies.h"
 #include "testing/support/read_text.h"
+#include "testing/support/scene_dump.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
@@ -15,7 +16,8 @@ using test::json_scene;
 /// Objects with these keys, and a cube that stands still.
 SceneDescription scene_of(const std::string& objects) {
     return json_scene(R"({"film": {"frames": 9}, "materials": {"m": {}}, "objects": [
-        {"solid": "cube", "material": "m"}, )" + objects + "]}");
+        {"solid": "cube", "material": "m"}, )" +
+                      objects + "]}");
 }
 
 const SceneNormalization& frame_of(const SceneSource& source) {
@@ -24,12 +26,12 @@ const SceneNormalization& frame_of(const SceneSource& source) {
 
 TEST(MovingScene, HasOneFrameOfReferenceForAllFrames) {
     const std::string mesh = (source_root() / "scenes/knot.ply").string();
-    for (const std::string& moving : {
-             std::string(R"({"solid": "octahedron", "material": "m",
+    for (const std::string& moving :
+         {std::string(R"({"solid": "octahedron", "material": "m",
                  "center": {"keys": [[2, [0, 0, 0]], [4, [40, 0, 0]], [8, [0, 1, 0]]], "interpolation": "smooth"}})"),
-             std::string(R"({"quad": [[0, 0, 0], [1, 0, 0], [1, 1, 0], {"keys": [[1, [0, 1, 0]], [5, [-20, 21, 0]],
+          std::string(R"({"quad": [[0, 0, 0], [1, 0, 0], [1, 1, 0], {"keys": [[1, [0, 1, 0]], [5, [-20, 21, 0]],
                  [6, [0, 1, 0]]]}], "material": "m"})"),
-             R"({"mesh": ")" + mesh + R"(", "material": "m", "scale": {"keys": [[0, 1], [4, 9], [8, 1]]},
+          R"({"mesh": ")" + mesh + R"(", "material": "m", "scale": {"keys": [[0, 1], [4, 9], [8, 1]]},
                  "rotate": {"keys": [[0, [0, 0, 0]], [8, [360, 20, 0]]]}, "center": [5, 1, 0]})"}) {
         const SceneDescription scene = scene_of(moving);
         const SceneNormalization first = frame_of(gather_scene(scene));

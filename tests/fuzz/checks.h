@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,14 +37,15 @@ inline void check_error(const Error& error, ErrorKind kind) {
 /// end in their order and whose entities and attributes are whole.
 inline void check_markup(std::string_view text) {
     require(is_utf8(text) && text.find("\xef\xbf\xbe") == text.npos && text.find("\xef\xbf\xbf") == text.npos);
-    const auto is_one_of = [](std::string_view word, std::string_view list) {
-        return list.find("," + std::string(word) + ",") != list.npos;
+    const auto is_one_of = [](std::string_view word, std::initializer_list<std::string_view> list) {
+        return std::find(list.begin(), list.end(), word) != list.end();
     };
     std::vector<std::string_view> open;
     for (size_t at = 0; at < text.size(); ++at) {
         require(text[at] == '\n' || static_cast<unsigned char>(text[at]) >= 0x20);
         require(text[at] != '>');
-        if (text[at] == '&') require(is_one_of(text.substr(at + 1, text.find(';', at) - at - 1), ",amp,lt,gt,quot,"));
+        if (text[at] == '&')
+            require(is_one_of(text.substr(at + 1, text.find(';', at) - at - 1), {"amp", "lt", "gt", "quot"}));
         if (text[at] != '<') continue;
         const size_t end = text.find('>', at);
         require(end != text.npos);
@@ -55,8 +57,8 @@ inline void check_markup(std::string_view text) {
             require(!open.empty() && open.back() == tag.substr(1));
             open.pop_back();
         } else if (name == "style" || name == "script") {
-            at = text.find("</" + std::string(name) + ">", end) + name.size() + 2;
-        } else if (!tag.ends_with('/') && !is_one_of(name, ",?xml,!doctype,meta,img,input,br,")) {
+            at = text.find(std::string("</").append(name).append(">"), end) + name.size() + 2;
+        } else if (!tag.ends_with('/') && !is_one_of(name, {"?xml", "!doctype", "meta", "img", "input", "br"})) {
             open.push_back(name);
         }
     }

@@ -159,12 +159,10 @@ CISTULA_INLINE IndexOf<Lanes<T, n>> repeated(const Lanes<T, n>& i, uint32_t size
     return rests.all();
 }
 /// Texels in lanes.
-template <class T, int n>
-CISTULA_INLINE Vec3<Lanes<T, n>> texel_at(const Vec3<float>* texels, const Texture& texture, const Lanes<T, n>& i,
-                                          const Lanes<T, n>& j) {
-    const auto row = repeated(j, texture.height);
-    const auto column = repeated(i, texture.width);
-    return vectors_at<3>(&texels->x, row * IndexOf<Lanes<T, n>>(int(texture.width)) + column);
+template <class Real>
+requires in_lanes<Real> CISTULA_INLINE Vec3<Real> texel_at(const Vec3<float>* texels, const Texture& texture,
+                                                           const IndexOf<Real>& column, const IndexOf<Real>& row) {
+    return vectors_at<3>(&texels->x, row * IndexOf<Real>(int(texture.width)) + column);
 }
 
 /// Finds the surfaces of hits in the lanes of `active`; others hold arbitrary numbers, but the first material.

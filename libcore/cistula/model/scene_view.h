@@ -185,14 +185,18 @@ struct VisibleLight {
     Vec3<Real> radiance;
 };
 
-enum class TextureFilter : uint32_t { nearest, bilinear };
+enum class TextureFilter : uint16_t { nearest, bilinear };
 
-/// A texture: linear RGB texels, row 0 at v = 0 (the top of the picture file), repeated infinitely.
+/// What lies beyond the edges of a texture along an axis: the texture again, its outermost texels, or its mirror image.
+enum class TextureWrap : uint8_t { repeat, clamp, mirror };
+
+/// A texture: linear RGB texels, row 0 at v = 0 (the top of the picture file), continued infinitely.
 struct Texture {
     uint32_t width, height;
     uint32_t first_texel;
     TextureFilter filter;
-    double repeat[2];  // factors of uv
+    TextureWrap wrap[2];  // along u, v
+    double repeat[2];     // factors of uv
 };
 
 /// Maximum depth of a tree, and so the size of traversal stacks.

@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string color(const glm::dvec3& c) {
+std::string color_json(const glm::dvec3& c) {
     const std::string parts[] = {fmt::format("{:.3g}", c.x), fmt::format("{:.3g}", c.y), fmt::format("{:.3g}", c.z)};
     return parts[0] == parts[1] && parts[1] == parts[2] ? parts[0] : fmt::format("[{}]", fmt::join(parts, ","));
 }
@@ -33,14 +33,14 @@ std::string light_list(const PixelSurface& s, const Film& film) {
     int shadows = 0;  // of which four are told
     for (const LightContribution& light : s.lights)
         if (light.adds != FixedColor{} || (light.fate == LightFate::shadow && ++shadows <= 4))
-            list.push_back(fmt::format("[{},{},[{}]]", light.light, color(radiance_of(light.adds, film)),
+            list.push_back(fmt::format("[{},{},[{}]]", light.light, color_json(radiance_of(light.adds, film)),
                                        fmt::join(light.through, ",")));
     return fmt::format("[{}]", fmt::join(list, ","));
 }
 
 std::string surface(const PixelSurface& s) {
     return fmt::format("[{},{},{:.3g},{:.3g},{:.3g},{},{:.4g},{:.4g},{:.3g}]", static_cast<int>(s.crossing), s.material,
-                       degrees_of(s.cosine), s.local, s.mirrored, color(s.through), s.index_before, s.index_beyond,
+                       degrees_of(s.cosine), s.local, s.mirrored, color_json(s.through), s.index_before, s.index_beyond,
                        s.total   ? -1.0
                        : s.bends ? degrees_of(s.bent_cosine)
                                  : 0.0);
@@ -48,9 +48,10 @@ std::string surface(const PixelSurface& s) {
 
 std::string ray(const PixelBranch& b, int parent, const Film& film, const glm::dvec3& eye) {
     const bool met = b.end == BranchEnd::surface;
-    std::string text = fmt::format("[{},{},{},{},{},{},{}", parent, static_cast<int>(b.kind), static_cast<int>(b.end),
-                                   color(b.weight), color(radiance_of(met ? b.surface.ambient_adds : b.adds, film)),
-                                   color(radiance_of(b.ledger, film)), met ? light_list(b.surface, film) : "[]");
+    std::string text =
+        fmt::format("[{},{},{},{},{},{},{}", parent, static_cast<int>(b.kind), static_cast<int>(b.end),
+                    color_json(b.weight), color_json(radiance_of(met ? b.surface.ambient_adds : b.adds, film)),
+                    color_json(radiance_of(b.ledger, film)), met ? light_list(b.surface, film) : "[]");
     if (b.end <= BranchEnd::background) {
         const glm::dvec3 at = b.end == BranchEnd::background ? b.direction : b.origin + b.direction * b.distance - eye;
         text += fmt::format(",[{:.4g},{:.4g},{:.4g}],{}", at.x, at.y, at.z, met ? b.surface.solid : b.visible_light);
@@ -59,7 +60,7 @@ std::string ray(const PixelBranch& b, int parent, const Film& film, const glm::d
     return text + "]";
 }
 
-Json point(const glm::dvec3& p) {
+Json point_json(const glm::dvec3& p) {
     return Json::parse(fmt::format("[{:.6g},{:.6g},{:.6g}]", p.x, p.y, p.z));
 }
 
@@ -143,7 +144,7 @@ std::string Explorer::start(const std::string& source, const std::vector<Wirefra
                  {"samples", film.samples},
                  {"depth", settings_.depth},
                  {"cutoff", settings_.cutoff},
-                 {"axes", {point(camera.right), point(camera.up), point(camera.forward)}},
+                 {"axes", {point_json(camera.right), point_json(camera.up), point_json(camera.forward)}},
                  {"tan_half_width", camera.tan_half_width},
                  {"objects", names(known.solids)},
                  {"materials", names(known.materials)},
@@ -154,18 +155,18 @@ std::string Explorer::start(const std::string& source, const std::vector<Wirefra
     for (const Wireframe& wires : bodies) {
         Json& body = json["bodies"].emplace_back(Json::array());
         for (const auto& [from, to] : wires)
-            body.push_back({point(from - camera.position), point(to - camera.position)});
+            body.push_back({point_json(from - camera.position), point_json(to - camera.position)});
     }
     scene_.visit([&](const auto& scene) {
         const auto add = [&](const char* list, const SceneNames::Named& named, const auto& at) {
             const glm::dvec3 world = glm::dvec3(at) * std::ldexp(1.0, -scene->scale) + scene->center;
             json[list].push_back(
-                {{"name", named.name}, {"place", named.place}, {"at", point(world - camera.position)}});
+                {{"name", named.name}, {"place", named.place}, {"at", point_json(world - camera.position)}});
         };
         for (size_t i = 0; i < known.lights.size(); ++i) add("lights", known.lights[i], scene->lights[i].position);
         for (size_t i = 0; i < known.visible_lights.size(); ++i)
             add("visible", known.visible_lights[i], scene->visible_lights[i].center);
-        json["bound"] = point(glm::dvec3(scene->bound) * std::ldexp(1.0, scene->radiance_exponent));
+        json["bound"] = point_json(glm::dvec3(scene->bound) * std::ldexp(1.0, scene->radiance_exponent));
     });
     std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     for (size_t at = 0; (at = text.find('<', at)) != text.npos;) text.replace(at, 1, "\\u003c");  // no </script> in it

@@ -26,7 +26,7 @@ std::vector<Wireframe> wireframes(const SceneSource& source, size_t most = 1500)
 /// A frame of a scene that is explored. Its trees are of the rays through the middles of pixels.
 class Explorer {
   public:
-    /// `scene` must outlive it. A target error becomes the cutoff that it implies.
+    /// The scene as the camera's frame has it. A target error becomes the cutoff that it implies.
     Explorer(const Scene& scene, const CameraFrame& camera, const FrameSettings& settings);
 
     /// All but the trees, as JSON: the picture, names, bodies and lights; points from the camera.
@@ -49,7 +49,7 @@ class Explorer {
               StopSignal stop) const;
 
   private:
-    const Scene& scene_;
+    Scene scene_;
     CameraFrame camera_;
     FrameSettings settings_;
 };

@@ -376,6 +376,8 @@ class Compiler {
             hash_.add(static_cast<uint32_t>(t.filter));
             hash_.add(t.repeat[0]);
             hash_.add(t.repeat[1]);
+            for (const TextureWrap wrap : t.wrap)  // with the hash of before for all that repeat
+                if (wrap != TextureWrap::repeat) hash_.add(static_cast<uint32_t>(wrap));
         }
         for (const Texture& t : textures.textures)
             hash_.add_bytes(textures.texels.data() + t.first_texel,

@@ -14,6 +14,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "cistula/model/scene_view.h"
+
 namespace cistula {
 
 /// The numbers that rays are traced with.
@@ -46,8 +48,9 @@ struct TextureDescription {
     std::string file;                          // absolute or relative to the working directory
     std::shared_ptr<const TexelArray> texels;  // of a program that has no file
     std::array<glm::dvec3, 2> checker{glm::dvec3{1}, glm::dvec3{0}};
-    bool bilinear = true;    // ignored by a checkerboard, which is always nearest
-    glm::dvec2 repeat{1};    // factor on uv; a checkerboard's period is 1 in uv: two cells
+    bool bilinear = true;               // ignored by a checkerboard, which is always nearest
+    glm::dvec2 repeat{1};               // factor on uv; a checkerboard's period is 1 in uv: two cells
+    std::array<TextureWrap, 2> wrap{};  // beyond the edges, along u, v
     std::string colorspace;  // one of color_encoding_names (image/color/color_encoding.h); empty: what the file says
     bool strict = false;     // texels that are negative or not finite are an error, and not clamped
     std::string place;       // "/textures/tiles", "line 3"

@@ -90,6 +90,17 @@ CameraDescription read_camera(const JsonValue& value) {
     return camera;
 }
 
+/// What lies beyond a texture's edges: one word for both axes, or one for each.
+void read_wrap(JsonObject& keys, TextureDescription& texture) {
+    const Key word{"wrap", KeyType::choice, {}, {}, false, texture_file_keys.find("wrap")->choices};
+    if (!keys.has("wrap")) return;
+    const JsonValue wrap = keys.at("wrap");
+    if (wrap.json().is_array() && wrap.json().size() != 2)
+        wrap.fail_expected(expected_text(word) + ", or two of them for u and v");
+    for (size_t axis = 0; axis < 2; ++axis)
+        texture.wrap[axis] = static_cast<TextureWrap>((wrap.json().is_array() ? wrap.item(axis) : wrap).choice(word));
+}
+
 TextureDescription read_texture(const JsonValue& value, const std::string& base_dir) {
     TextureDescription texture;
     texture.place = value.place();
@@ -98,7 +109,8 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
     const bool has_checker = is_object && value.json().contains("checker");
     if (has_file && has_checker) value.fail("expected one of 'file' and 'checker', found both");
     if (is_object && !has_file && !has_checker) {
-        const std::vector<std::string_view> known = {"file", "filter", "checker", "repeat", "colorspace", "strict"};
+        const std::vector<std::string_view> known = {"file", "filter",     "checker", "repeat",
+                                                     "wrap", "colorspace", "strict"};
         for (const auto& member : value.json().items())
             if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
                 value.fail_at(value.place_of(member.key()), "unknown key", suggestion(member.key(), known, "keys"));
@@ -110,6 +122,7 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
         texture.file = file_beside_scene(texture.file, base_dir);
         if (const int filter = keys.read_choice("filter"); filter >= 0) texture.bilinear = filter == 1;
         keys.read("repeat", texture.repeat);
+        read_wrap(keys, texture);
         if (const int name = keys.read_choice("colorspace"); name >= 0)
             texture.colorspace = color_encoding_names[static_cast<size_t>(name)];
         keys.read("strict", texture.strict);
@@ -123,6 +136,7 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
     texture.checker = {colors.item(0).color(color), colors.item(1).color(color)};
     texture.bilinear = false;
     keys.read("repeat", texture.repeat);
+    read_wrap(keys, texture);
     keys.finish();
     return texture;
 }
@@ -315,7 +329,8 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
     keys.read("depth", scene.depth);
     keys.read("cutoff", scene.cutoff);
     keys.read("contact", scene.contact);
-    if (keys.has("ambient") || keys.has("background")) file->read_around(scene, clock);
+    const bool has_ambient = keys.has("ambient");
+    if (keys.has("background") || has_ambient) file->read_around(scene, clock);
     if (keys.has("film")) scene.film = read_film(keys.at("film"));
     if (keys.has("camera")) {
         KeyClock of_camera;

@@ -101,11 +101,14 @@ constexpr Key cylindrical_list[] = {
 };
 
 constexpr Range repeats{0, 1e6, true};
+constexpr std::string_view wrap_choices[] = {"repeat", "clamp", "mirror"};
+constexpr Key wrap{"wrap", KeyType::other, {}, {}, false, wrap_choices};  // one, or two
 
 constexpr Key texture_file_list[] = {
     text("file", required),
     choice("filter", filter_choices, "\"bilinear\""),
     pair("repeat", repeats, "[1, 1]"),
+    wrap,
     optional_choice("colorspace", color_encoding_names),
     boolean("strict", "false"),
 };
@@ -113,6 +116,7 @@ constexpr Key texture_file_list[] = {
 constexpr Key texture_checker_list[] = {
     other("checker", required),
     pair("repeat", repeats, "[1, 1]"),
+    wrap,
 };
 
 constexpr Key material_list[] = {
@@ -212,7 +216,7 @@ std::span<const KeyTable* const> all_key_tables() {
     static constexpr const KeyTable* tables[] = {
         &scene_keys,           &film_keys,     &camera_keys, &path_keys,        &cylindrical_keys, &texture_file_keys,
         &texture_checker_keys, &material_keys, &solid_keys,  &edge_lights_keys, &quad_keys,        &triangles_keys,
-        &triangle_list_keys,   &mesh_keys,     &light_keys,  &frame_keys,  &keyed_keys};
+        &triangle_list_keys,   &mesh_keys,     &light_keys,  &frame_keys,       &keyed_keys};
     return tables;
 }
 

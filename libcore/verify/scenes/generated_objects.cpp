@@ -242,6 +242,8 @@ class Objects : Part {
         const bool picture = random_.chance(0.5);
         const bool marble = random_.chance(0.5);
         t.bilinear = random_.chance(0.6);
+        const size_t number = scene_.textures.size();
+        t.wrap = {TextureWrap(number % 3), TextureWrap(number / 2 % 3)};
         if (picture && !files_.empty()) t.file = files_ + (marble ? "/marble.data" : "/floor.data");
         scene_.textures.push_back(t);
         return static_cast<int>(scene_.textures.size()) - 1;
