@@ -68,7 +68,7 @@ def test_textures_that_a_wheel_reads_are_those_of_the_library(name: str, dtype: 
                                                               monkeypatch: pytest.MonkeyPatch) -> None:
     numbers = np.random.default_rng(3).random((5, 7, channels)) * (1 if dtype == "float32" else np.iinfo(dtype).max)
     picture = oiio.ImageOutput.create(str(tmp_path / name))
-    assert picture.open(str(tmp_path / name), oiio.ImageSpec(7, 5, channels, dtype)) and picture.write_image(numbers.astype(dtype))
+    assert picture and picture.open(str(tmp_path / name), oiio.ImageSpec(7, 5, channels, dtype)) and picture.write_image(numbers.astype(dtype))
     picture.close()
     scene = {**SCENE, "textures": {"t": {"file": name}}, "materials": {"m": {"texture": "t"}},
              "objects": [{"name": "q", "quad": [[-3, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]], "material": "m"}]}
