@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import os
 import pickle
 import sys
 from collections.abc import Callable
@@ -67,7 +68,7 @@ def test_textures_that_a_wheel_reads_are_those_of_the_library(name: str, dtype: 
                                                               monkeypatch: pytest.MonkeyPatch) -> None:
     numbers = np.random.default_rng(3).random((5, 7, channels)) * (1 if dtype == "float32" else np.iinfo(dtype).max)
     picture = oiio.ImageOutput.create(str(tmp_path / name))
-    assert picture.open(str(tmp_path / name), oiio.ImageSpec(7, 5, channels, dtype)) and picture.write_image(numbers.astype(dtype))
+    assert picture and picture.open(str(tmp_path / name), oiio.ImageSpec(7, 5, channels, dtype)) and picture.write_image(numbers.astype(dtype))
     picture.close()
     scene = {**SCENE, "textures": {"t": {"file": name}}, "materials": {"m": {"texture": "t"}},
              "objects": [{"name": "q", "quad": [[-3, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]], "material": "m"}]}
@@ -75,6 +76,9 @@ def test_textures_that_a_wheel_reads_are_those_of_the_library(name: str, dtype: 
     monkeypatch.setattr(_core, "reads_all_pictures", False)
     ours = cistula.Scene.from_dict(scene, folder=tmp_path)
     assert ours.render().hash == native.render().hash
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    assert _core.run_program("render", [b"-q", b"-o", os.fsencode(tmp_path / "a.exr"), os.fsencode(tmp_path / "scene.json")]) == 0
+    assert cistula.compare(tmp_path / "a.exr", native.render(), layers="R,G,B,A", fail=0)
     monkeypatch.setitem(sys.modules, "OpenImageIO", None)
     with pytest.raises(cistula.FileError, match="pip install openimageio"):
         cistula.Scene.from_dict(scene, folder=tmp_path)
