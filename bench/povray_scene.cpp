@@ -91,7 +91,7 @@ std::string texture(const SceneDescription& scene, const MaterialDescription& m,
 MeshSource triangles_of(const SolidObject& solid) {
     MeshSource mesh;
     mesh.owned_vertices = world_vertices(solid);
-    mesh.owned_triangles = triangulated(platonic_shape(solid.solid));
+    mesh.owned_triangles = triangulated(polyhedron_of(solid));
     mesh.view_owned();
     return mesh;
 }

@@ -80,7 +80,7 @@ inline OwnedScene make_scene(const SceneDescription& scene) {
         MeshSource made;
         if (solid.platonic) {
             made.owned_vertices = world_vertices(*solid.platonic);
-            made.owned_triangles = triangulated(platonic_shape(solid.platonic->solid));
+            made.owned_triangles = triangulated(polyhedron_of(*solid.platonic));
             made.view_owned();
         }
         append_triangles(scene, solid.platonic ? made : solid.mesh, static_cast<int>(solid.material),

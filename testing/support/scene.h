@@ -180,7 +180,7 @@ Ray<Real> spawn(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit
 }
 
 /// Length of a line inside a Platonic solid about the origin whose planes are moved inward by `margin`.
-inline double chord(const PlatonicShape& shape, const Rotation& rotation, double radius, double margin,
+inline double chord(const Polyhedron& shape, const Rotation& rotation, double radius, double margin,
                     const dvec3& origin, const dvec3& direction) {
     double enter = -1e300, leave = 1e300;
     for (const auto& face : shape.faces) {

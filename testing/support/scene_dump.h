@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "scene/description/description.h"
+#include "scene/description/polyhedron.h"
 
 namespace cistula {
 
@@ -50,7 +50,8 @@ class SceneDump {
     }
 
     void write(const SolidObject& s) {
-        line(" solid", static_cast<int>(s.solid), s.center, s.radius, s.rotation);
+        line(" solid", polyhedron_of(s).name, s.center, s.radius, s.rotation);
+        for (const auto& p : polyhedron_of(s).planes) line(" planes", p.normal, p.low, p.high);
         const EdgeLights& e = s.edge_lights;
         line(" edge lights", e.count, e.color, e.glow, e.radius, e.visible, e.falloff);
     }

@@ -165,7 +165,7 @@ class Coverage {
             }
         }
         if (const auto* solid = std::get_if<SolidObject>(&object.shape)) {
-            note(true, platonic_name(solid->solid));
+            note(true, polyhedron_of(*solid).name);
             note(solid->rotation == dvec3(0), "not rotated");
             note(solid->rotation != dvec3(0), "rotated");
             const EdgeLights& lights = solid->edge_lights;
@@ -329,7 +329,7 @@ void check_coverage(const std::string& folder) {
              "light on an edge of triangles", "light in a solid", "shared face of both kinds", "no ambient light",
              "mesh given by planes", "black background", "camera on a path", "target on a path", "far camera",
              "pinned frame", "pinned bound", "large units", "convex solids only", "clamped texture",
-             "mirrored texture"}},
+             "mirrored texture", "box", "truncated-cube"}},
         {4, {"faces in one place of planes", "faces in one place of both kinds", "lights on edges that do not light",
              "camera in several solids", "a tree over convex solids apart", "small units"}}};
     // clang-format on

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/default_rounding.h"
+#include "scene/compile/solids/compile_solids.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {
@@ -10,45 +11,19 @@ namespace {
 
 using glm::dvec3;
 
-struct Plane {
-    dvec3 normal;
-    double distance;
-};
-
-// Tolerance for corners of planes: far above the rounding of a corner's distance from its planes. Planes that nearly
-// meet the corner enlarge the box by no more than this.
-constexpr double corner_slack = 0x1p-30;
+// Planes as near to an edge hold it: far above rounding.
+constexpr double edge_slack = 0x1p-30;
 
 /// The box of a convex solid whose planes are pushed out by 64 u M, u that of float.
 template <class Real>
 Box convex_box(const SceneView<Real>& scene, const Solid& solid) {
     const double extent = static_cast<double>(scene.extent);
     const double push = 64 * 0x1p-24 * extent;
-    std::vector<Plane> planes;
-    for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
-        const dvec3 normal(slab.normal);
-        planes.push_back({normal, static_cast<double>(slab.high) + push});
-        if (slab.low > -RealTraits<Real>::infinity) planes.push_back({-normal, push - static_cast<double>(slab.low)});
-    }
+    std::vector<BodyPlane> planes;
+    for (const SolidPlane& plane : solid_planes(scene, solid)) planes.push_back({plane.normal, plane.offset + push});
     Box box;
-    for (size_t i = 0; i < planes.size(); ++i) {
-        for (size_t j = i + 1; j < planes.size(); ++j) {
-            const dvec3 across = cross(planes[i].normal, planes[j].normal);
-            for (size_t k = j + 1; k < planes.size(); ++k) {
-                const double determinant = dot(across, planes[k].normal);
-                if (magnitude(determinant) < 1e-6) continue;
-                const dvec3 corner =
-                    (planes[i].distance * cross(planes[j].normal, planes[k].normal) +
-                     planes[j].distance * cross(planes[k].normal, planes[i].normal) + planes[k].distance * across) /
-                    determinant;
-                const auto has_corner = [&](const Plane& p) {
-                    return dot(p.normal, corner) <= p.distance + corner_slack * extent;
-                };
-                if (std::all_of(planes.begin(), planes.end(), has_corner)) box.add(corner);
-            }
-        }
-    }
+    for (const PlaneEdge& edge : edges_of(planes, edge_slack * extent))
+        for (const dvec3& end : edge.ends) box.add(end);
     return box;
 }
 

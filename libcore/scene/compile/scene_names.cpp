@@ -30,7 +30,7 @@ SceneNames name_scene(const SceneSource& source) {
     for (const SourceSolid& solid : source.solids) {
         if (!solid.platonic) continue;
         const EdgeLights& on_edges = solid.platonic->edge_lights;
-        const size_t edges = platonic_shape(solid.platonic->solid).edges.size();
+        const size_t edges = polyhedron_of(*solid.platonic).edges.size();
         for (size_t edge = 0; edge < edges; ++edge)
             for (int i = 0; i < on_edges.count; ++i)
                 add_light(names, solid.name + " edge " + std::to_string(edge) + " light " + std::to_string(i),

@@ -23,7 +23,7 @@ void add_solid(Box& box, const SolidObject& solid) {
     for (const glm::dvec3& p : vertices) box.add(p);
     const EdgeLights& lights = solid.edge_lights;
     if (lights.count == 0 || !lights.shown()) return;
-    for (const auto& edge : platonic_shape(solid.solid).edges) {
+    for (const auto& edge : polyhedron_of(solid).edges) {
         for (int i = 0; i < lights.count; ++i) {
             const double s = (i + 1.0) / (lights.count + 1.0);
             const glm::dvec3 &a = vertices[edge.vertices[0]], &b = vertices[edge.vertices[1]];
@@ -46,7 +46,7 @@ double largest_coordinate(const Box& box, const glm::dvec3& center) {
 std::vector<glm::dvec3> world_vertices(const SolidObject& solid) {
     const Rotation rotation(solid.rotation);
     std::vector<glm::dvec3> vertices;
-    for (const glm::dvec3& p : platonic_shape(solid.solid).vertices)
+    for (const glm::dvec3& p : polyhedron_of(solid).vertices)
         vertices.push_back(solid.center + rotation(solid.radius * p));
     return vertices;
 }

@@ -174,7 +174,9 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
         if (const auto* platonic = std::get_if<SolidObject>(&object.shape)) {
             check_platonic(description, *platonic, object.place);
             solid.platonic = platonic;
-            lights += platonic_shape(platonic->solid).edges.size() * static_cast<size_t>(platonic->edge_lights.count);
+            if (const std::string& warning = polyhedron_of(*platonic).warning; !warning.empty())
+                source.warnings.push_back(scene_error(description, object.place, warning).what());
+            lights += polyhedron_of(*platonic).edges.size() * static_cast<size_t>(platonic->edge_lights.count);
             if (lights > most_lights)
                 throw scene_error(
                     description, object.place,
@@ -201,7 +203,7 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
         const std::string what = "the material " + material.name + " has a texture, but ";
         if (solid.platonic)
             throw scene_error(description, solid.place,
-                              what + "a " + platonic_name(solid.platonic->solid) + " has no texture coordinates",
+                              what + "a " + polyhedron_of(*solid.platonic).name + " has no texture coordinates",
                               "give it a material without a texture");
         if (solid.mesh.uvs.empty())
             throw scene_error(description, solid.place, what + "the triangles have no texture coordinates",

@@ -72,10 +72,14 @@ struct EdgeLights {
     bool shown() const { return visible && radius > 0; }
 };
 
+struct Polyhedron;  // polyhedron.h
+
+/// A convex body given by its planes: a Platonic solid, or any.
 struct SolidObject {
     PlatonicSolid solid = PlatonicSolid::octahedron;
+    std::shared_ptr<const Polyhedron> body;  // in place of the Platonic solid
     glm::dvec3 center{0};
-    double radius = 1;       // of the circumscribed sphere
+    double radius = 1;       // factor of the body; of a Platonic solid, of the circumscribed sphere
     glm::dvec3 rotation{0};  // degrees about x, then y, then z
     EdgeLights edge_lights;
 };

@@ -18,7 +18,27 @@ constexpr Range size{least_length, most};
 constexpr Range share{0, 1};
 constexpr Range angle{-most_angle, most_angle};
 
-constexpr std::string_view solid_choices[] = {"tetrahedron", "cube", "octahedron", "dodecahedron", "icosahedron"};
+constexpr std::string_view solid_choices[] = {"tetrahedron",
+                                              "cube",
+                                              "octahedron",
+                                              "dodecahedron",
+                                              "icosahedron",
+                                              "truncated-tetrahedron",
+                                              "cuboctahedron",
+                                              "truncated-cube",
+                                              "truncated-octahedron",
+                                              "rhombicuboctahedron",
+                                              "truncated-cuboctahedron",
+                                              "snub-cube",
+                                              "icosidodecahedron",
+                                              "truncated-dodecahedron",
+                                              "truncated-icosahedron",
+                                              "rhombicosidodecahedron",
+                                              "truncated-icosidodecahedron",
+                                              "snub-dodecahedron"};
+constexpr std::string_view box_choices[] = {"box"};
+constexpr std::string_view convex_choices[] = {"convex"};
+constexpr std::string_view prism_choices[] = {"prism", "antiprism", "pyramid"};
 constexpr std::string_view filter_choices[] = {"nearest", "bilinear"};
 constexpr std::string_view falloff_choices[] = {"none", "inverse-square"};
 
@@ -139,6 +159,40 @@ constexpr Key solid_list[] = {
     other("edge_lights"),
 };
 
+constexpr Key box_list[] = {
+    text("name"),
+    choice("solid", box_choices, {}),
+    point("size", size, {}),
+    point("center", anywhere, "[0, 0, 0]"),
+    point("rotate", angle, "[0, 0, 0]"),
+    text("material", required),
+    other("edge_lights"),
+};
+
+constexpr Key convex_list[] = {
+    text("name"),
+    choice("solid", convex_choices, {}),
+    other("planes"),
+    other("points"),
+    point("center", anywhere, "[0, 0, 0]"),
+    number("scale", size, "1"),
+    point("rotate", angle, "[0, 0, 0]"),
+    text("material", required),
+    other("edge_lights"),
+};
+
+constexpr Key prism_list[] = {
+    text("name"),
+    choice("solid", prism_choices, {}),
+    whole("sides", {3, 255}, {}, required),
+    number("radius", size, "1"),
+    number("height", size, "1"),
+    point("center", anywhere, "[0, 0, 0]"),
+    point("rotate", angle, "[0, 0, 0]"),
+    text("material", required),
+    other("edge_lights"),
+};
+
 constexpr Key edge_lights_list[] = {
     whole("count", {0, 1000}, {}, required),
     color("color", not_negative, "1"),
@@ -202,6 +256,9 @@ constexpr KeyTable texture_file_keys{"texture_file", texture_file_list};
 constexpr KeyTable texture_checker_keys{"texture_checker", texture_checker_list};
 constexpr KeyTable material_keys{"material", material_list};
 constexpr KeyTable solid_keys{"solid", solid_list};
+constexpr KeyTable box_keys{"box", box_list};
+constexpr KeyTable convex_keys{"convex", convex_list};
+constexpr KeyTable prism_keys{"prism", prism_list};
 constexpr KeyTable edge_lights_keys{"edge_lights", edge_lights_list};
 constexpr KeyTable quad_keys{"quad", quad_list};
 constexpr KeyTable triangles_keys{"triangles", triangles_list};
@@ -210,13 +267,14 @@ constexpr KeyTable mesh_keys{"mesh", mesh_list};
 constexpr KeyTable light_keys{"light", light_list};
 constexpr KeyTable frame_keys{"frame", frame_list};
 constexpr KeyTable keyed_keys{"keyed", keyed_list};
-constexpr std::span<const std::string_view> platonic_names{solid_choices};
 
 std::span<const KeyTable* const> all_key_tables() {
     static constexpr const KeyTable* tables[] = {
-        &scene_keys,           &film_keys,     &camera_keys, &path_keys,        &cylindrical_keys, &texture_file_keys,
-        &texture_checker_keys, &material_keys, &solid_keys,  &edge_lights_keys, &quad_keys,        &triangles_keys,
-        &triangle_list_keys,   &mesh_keys,     &light_keys,  &frame_keys,       &keyed_keys};
+        &scene_keys,       &film_keys,         &camera_keys,          &path_keys,
+        &cylindrical_keys, &texture_file_keys, &texture_checker_keys, &material_keys,
+        &solid_keys,       &box_keys,          &convex_keys,          &prism_keys,
+        &edge_lights_keys, &quad_keys,         &triangles_keys,       &triangle_list_keys,
+        &mesh_keys,        &light_keys,        &frame_keys,           &keyed_keys};
     return tables;
 }
 

@@ -138,9 +138,11 @@ class ContactSearch {
         reach.rounding = solid.mesh.rounding;
         double thickness = solid.closed ? 3 * solid.thickness * normalization_.factor : sizes_[number].half_width;
         if (const SolidObject* platonic = solid.platonic) {
-            thickness = platonic_shape(platonic->solid).inradius * platonic->radius * normalization_.factor;
+            const Polyhedron& body = polyhedron_of(*platonic);
+            thickness = body.inradius * platonic->radius * normalization_.factor;
+            const double of_size = half_unit_of(platonic->radius) * body.reach + platonic->radius * body.half_unit;
             for (int axis = 0; axis < 3; ++axis)
-                reach.rounding.half_unit[axis] = half_unit_of(platonic->center[axis]) + half_unit_of(platonic->radius);
+                reach.rounding.half_unit[axis] = half_unit_of(platonic->center[axis]) + of_size;
         }
         reach.rounding.half_unit *= normalization_.factor;
         reach.most = 0x1p-10 * thickness;
@@ -162,7 +164,7 @@ class ContactSearch {
         body.planes = planes;
         if (planes) {
             body.points = planes->vertices;
-            body.facets = triangulated(platonic_shape(from.platonic->solid));
+            body.facets = triangulated(polyhedron_of(*from.platonic));
         } else {
             body.points.reserve(from.mesh.vertices.size());
             for (const dvec3& p : from.mesh.vertices) body.points.push_back(normalization_.point(p));

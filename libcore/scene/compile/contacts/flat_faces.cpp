@@ -223,7 +223,7 @@ void add_triangles(const ContactBody& body, const std::vector<uint32_t>& triangl
 }
 
 void add_platonic_faces(const ContactBody& body, const SolidObject& solid, std::vector<FlatFace>& faces) {
-    for (const PlatonicShape::Face& from : platonic_shape(solid.solid).faces) {
+    for (const Polyhedron::Face& from : polyhedron_of(solid).faces) {
         FlatFace face{};
         face.solid = body.solid;
         face.parts = {from.id};

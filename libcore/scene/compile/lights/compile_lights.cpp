@@ -16,7 +16,7 @@ void add_edge_lights(std::vector<NormalizedLight>& lights, const SourceSolid& fr
     const EdgeLights& on_edges = object.edge_lights;
     if (on_edges.count == 0) return;
     const std::string group = groups.of_edges(on_edges, name_of(from));
-    for (const auto& edge : platonic_shape(object.solid).edges) {
+    for (const auto& edge : polyhedron_of(object).edges) {
         const dvec3 &a = solid.vertices[edge.vertices[0]], &b = solid.vertices[edge.vertices[1]];
         for (int i = 0; i < on_edges.count; ++i) {
             const double s = (i + 1.0) / (on_edges.count + 1.0);

@@ -53,8 +53,7 @@ class SmallestPartSearch {
                 continue;
             }
             const double radius = solid.platonic->radius * normalization_.factor;
-            add(platonic_shape(solid.platonic->solid).inradius * radius,
-                [&] { return name(solid) + ": its inradius"; });
+            add(polyhedron_of(*solid.platonic).inradius * radius, [&] { return name(solid) + ": its inradius"; });
         }
     }
 
