@@ -65,9 +65,9 @@ TEST(SceneSolids, Errors) {
     for (const KeyTable* table : {&box_keys, &convex_keys, &prism_keys, &solid_keys})
         for (const std::string_view name : table->find("solid")->choices)
             names += (names.empty() ? "" : ", ") + std::string(name);
-    EXPECT_WRONG_OBJECT(R"({"solid": "torus", "material": "glass"})",
-                        "/solid: unknown value 'torus'; known values: " +
-                            names.substr(0, names.find(", truncated-cuboctahedron")) + ", ...");
+    EXPECT_WRONG_OBJECT(
+        R"({"solid": "torus", "material": "glass"})",
+        "/solid: unknown value 'torus'; known values: " + names.substr(0, names.find(", snub-cube")) + ", ...");
     EXPECT_WRONG_OBJECT(R"({"solid": "truncatedcube", "material": "glass"})",
                         "/solid: unknown value 'truncatedcube'; did you mean 'truncated-cube'?");
     EXPECT_WRONG_OBJECT(R"({"solid": 8, "material": "glass"})", "/solid: expected one of " + names + ", found 8");
