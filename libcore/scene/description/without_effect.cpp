@@ -40,6 +40,7 @@ void put_out(EdgeLights& lights) {
 std::optional<SceneDescription> without_effect(const SceneDescription& scene, uint32_t effect) {
     if ((effect & (effect_opaque_shadows | effect_transparent_shadows)) != 0) return std::nullopt;
     SceneDescription less = scene;
+    less.motion = nullptr;  // which goes by the numbers of all objects
     for (MaterialDescription& material : less.materials) take_from(material, effect);
     for (LightDescription& light : less.lights) take_from_light(light, effect);
     for (ObjectDescription& object : less.objects) {
