@@ -24,6 +24,24 @@ Shape shape_of(const std::string& object) {
     return std::get<Shape>(read_objects(object).objects.at(0).shape);
 }
 
+TEST(SceneSpheres, EveryKeyArrives) {
+    const ObjectDescription object = read_objects(R"({"name": "ball", "solid": "sphere", "center": [1, 2, 3],
+        "radius": 4, "rotate": [5, 6, 7], "material": "tiles"})")
+                                         .objects.at(0);
+    EXPECT_EQ(object.name, "ball");
+    const auto& sphere = std::get<SphereObject>(object.shape);
+    EXPECT_EQ(sphere.center, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(sphere.radius, 4);
+    EXPECT_EQ(sphere.rotation, glm::dvec3(5, 6, 7));
+}
+
+TEST(SceneSpheres, HaveNoEdges) {
+    EXPECT_WRONG_OBJECT(R"({"solid": "sphere", "material": "glass", "edge_lights": {"count": 1}})",
+                        "/edge_lights: a sphere has no edges");
+    EXPECT_WRONG_OBJECT(R"({"solid": "spere", "material": "glass"})",
+                        "/solid: unknown value 'spere'; did you mean 'sphere'?");
+}
+
 TEST(SceneSolids, EveryKeyArrives) {
     const ObjectDescription object =
         read_objects(R"({"name": "gem", "solid": "icosahedron", "center": [1, 2, 3], "radius": 4,
@@ -59,11 +77,12 @@ TEST(SceneSolids, AllFiveByName) {
 TEST(SceneSolids, Errors) {
     EXPECT_WRONG_OBJECT(R"({"solid": "octahedrom", "material": "glass"})",
                         "/solid: unknown value 'octahedrom'; did you mean 'octahedron'?");
-    EXPECT_WRONG_OBJECT(
-        R"({"solid": "sphere", "material": "glass"})",
-        "/solid: unknown value 'sphere'; known values: tetrahedron, cube, octahedron, dodecahedron, icosahedron");
+    EXPECT_WRONG_OBJECT(R"({"solid": "torus", "material": "glass"})",
+                        "/solid: unknown value 'torus'; known values: tetrahedron, cube, octahedron, dodecahedron, "
+                        "icosahedron, sphere");
     EXPECT_WRONG_OBJECT(R"({"solid": 8, "material": "glass"})",
-                        "/solid: expected one of tetrahedron, cube, octahedron, dodecahedron, icosahedron, found 8");
+                        "/solid: expected one of tetrahedron, cube, octahedron, dodecahedron, icosahedron, sphere, "
+                        "found 8");
     EXPECT_WRONG_OBJECT(R"({"solid": "cube", "radius": 0, "material": "glass"})",
                         "/radius: expected a number from 1e-30 to 1e30, found 0");
     EXPECT_WRONG_OBJECT(R"({"solid": "cube", "center": [1, 2], "material": "glass"})",

@@ -42,10 +42,19 @@ EdgeLights read_edge_lights(const JsonValue& value) {
 }
 
 void read_solid(const JsonValue& value, const ObjectContext& context, ObjectDescription& object) {
-    SolidObject solid;
     JsonObject keys(value, solid_keys);
     read_common(keys, context, object);
-    solid.solid = static_cast<PlatonicSolid>(keys.read_choice("solid"));
+    const int choice = keys.read_choice("solid");
+    if (choice == static_cast<int>(platonic_names.size())) {
+        SphereObject sphere;
+        solid_fields(sphere, [&](std::string_view key, auto& field) { keys.read(key, field); });
+        if (keys.has("edge_lights")) keys.fail("edge_lights", "a sphere has no edges");
+        keys.finish();
+        object.shape = sphere;
+        return;
+    }
+    SolidObject solid;
+    solid.solid = static_cast<PlatonicSolid>(choice);
     solid_fields(solid, [&](std::string_view key, auto& field) { keys.read(key, field); });
     if (keys.has("edge_lights")) solid.edge_lights = read_edge_lights(keys.at("edge_lights"));
     keys.finish();

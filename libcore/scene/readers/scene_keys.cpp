@@ -18,7 +18,8 @@ constexpr Range size{least_length, most};
 constexpr Range share{0, 1};
 constexpr Range angle{-most_angle, most_angle};
 
-constexpr std::string_view solid_choices[] = {"tetrahedron", "cube", "octahedron", "dodecahedron", "icosahedron"};
+constexpr std::string_view solid_choices[] = {"tetrahedron",  "cube",        "octahedron",
+                                              "dodecahedron", "icosahedron", "sphere"};
 constexpr std::string_view filter_choices[] = {"nearest", "bilinear"};
 constexpr std::string_view falloff_choices[] = {"none", "inverse-square"};
 
@@ -198,7 +199,7 @@ constexpr KeyTable triangle_list_keys{"triangle_list", triangle_list_list};
 constexpr KeyTable mesh_keys{"mesh", mesh_list};
 constexpr KeyTable light_keys{"light", light_list};
 constexpr KeyTable frame_keys{"frame", frame_list};
-constexpr std::span<const std::string_view> platonic_names{solid_choices};
+constexpr std::span<const std::string_view> platonic_names{solid_choices, std::size(solid_choices) - 1};
 
 std::span<const KeyTable* const> all_key_tables() {
     static constexpr const KeyTable* tables[] = {

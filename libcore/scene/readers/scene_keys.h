@@ -85,9 +85,9 @@ void light_fields(Light& light, const Visit& visit) {
     visit("visible", light.visible);
 }
 
-/// Calls visit(key, field) for each field of a Platonic solid.
-template <class Platonic, class Visit>
-void solid_fields(Platonic& solid, const Visit& visit) {
+/// Calls visit(key, field) for each field of a Platonic solid or a sphere.
+template <class Solid, class Visit>
+void solid_fields(Solid& solid, const Visit& visit) {
     visit("center", solid.center);
     visit("radius", solid.radius);
     visit("rotate", solid.rotation);
@@ -123,7 +123,8 @@ inline constexpr std::string_view comment_key = "$comment";
 /// All of the tables above.
 std::span<const KeyTable* const> all_key_tables();
 
-/// Names of the Platonic solids, in the order of the enumeration PlatonicSolid.
+/// Names of the Platonic solids, in the order of the enumeration PlatonicSolid. (The last choice of `solid` is none: a
+/// sphere.)
 extern const std::span<const std::string_view> platonic_names;
 
 /// The shortest decimal text of a number, with "1e30" rather than "1e+30".

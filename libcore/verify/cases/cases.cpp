@@ -2,6 +2,7 @@
 
 namespace cistula::verify {
 
+void add_balls(Cases& cases);
 void add_contact(Cases& cases);
 void add_digits(Cases& cases);
 void add_geometry(Cases& cases);
@@ -21,6 +22,7 @@ const std::vector<Case>& all_cases() {
             cases.group = group;
             cases_of(cases);
         };
+        add("balls/", add_balls);
         add("contact/", add_contact);
         add("digits/", add_digits);
         add("geometry/", add_geometry);

@@ -33,7 +33,7 @@ SolidObject cube(const dvec3& center, double radius, const dvec3& rotation) {
     return {.solid = PlatonicSolid::cube, .center = center, .radius = radius, .rotation = rotation};
 }
 
-using Shape = std::variant<SolidObject, TrianglesObject, MeshObject>;
+using Shape = decltype(ObjectDescription::shape);
 
 /// Adds a floor, walls and sheets, then groups of closed bodies, with their materials.
 class Objects : Part {
