@@ -80,7 +80,7 @@ TYPED_TEST(Spheres, KnowTheSheetsAndMeshesNearThem) {
     add_object(scene, cube);  // its box meets no ball's
     cube = triangulated_solid(solid(PlatonicSolid::cube, {-0.6, 0, 1.5}, 0.5));
     cube.keep_triangles = true;
-    add_object(scene, cube);  // that of the second
+    add_object(scene, cube);
     const auto compiled = compile_scene<TypeParam>(scene);
     const auto& balls = compiled->balls;
     ASSERT_EQ(compiled->ball_planes.size(), 2u);

@@ -37,7 +37,7 @@ struct alignas(16) Ball {
     Real radius;
     uint32_t family;       // the first ball of its family
     uint32_t has_kin;      // 1 if others are in its family
-    uint32_t near_meshes;  // 1 if its box meets that of a closed mesh
+    uint32_t near_meshes;  // 1 if a closed mesh may touch its surface
     uint32_t first_plane,
         plane_count;       // the planes of flat sheets near it: near_planes[first_plane + i] of ball_planes
     Vec3<double> axes[3];  // those of its longitudes and latitudes (texture_uv)

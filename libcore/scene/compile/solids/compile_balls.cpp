@@ -40,6 +40,20 @@ std::vector<uint32_t> find_families(const std::vector<PlacedBall>& balls, double
     return first;
 }
 
+/// The padded box of a cluster.
+template <class Real>
+Box cluster_box_of(const SceneView<Real>& scene, uint32_t cluster) {
+    const PaddedBox box = primitive_box(scene, scene.convex.size + cluster);
+    return {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}};
+}
+
+/// Whether a ball's surface may come within `reach` of what is in a box.
+bool is_near(const PlacedBall& ball, const Box& box, double reach) {
+    double farthest = 0;
+    for (const dvec3& corner : box.corners()) farthest = max_or_second(length(corner - ball.center), farthest);
+    return distance_to_box(box, ball.center) <= ball.radius + reach && farthest >= ball.radius - reach;
+}
+
 /// The planes of flat sheets near balls.
 template <class Real>
 class BallPlanes {
@@ -128,18 +142,26 @@ void find_near_balls(CompiledScene<Real>& scene, const std::vector<PlacedBall>& 
                      const std::vector<std::optional<PlaneEquation>>& planes) {
     if (balls.empty()) return;
     const double reach = 2 * double(incidence<Real>) * double(scene.extent);
-    std::vector<RTCBuildPrimitive> primitives;
-    for (uint32_t i = 0; i < scene.solids.size(); ++i)
-        if (scene.solids[i].kind == SolidKind::mesh || planes[i])
-            primitives.push_back(padded_primitive(boxes[i], reach, i));
+    const auto solids = uint32_t(scene.solids.size());
+    const SceneView<Real> view = scene.view();
+    std::vector<RTCBuildPrimitive> primitives;  // sheets by their numbers, then clusters of meshes
+    std::vector<Box> cluster_boxes(scene.clusters.size());
+    for (uint32_t i = 0; i < solids; ++i)
+        if (planes[i]) primitives.push_back(padded_primitive(boxes[i], reach, i));
+    for (uint32_t i = 0; i < scene.clusters.size(); ++i) {
+        if (scene.solids[scene.clusters[i].solid].kind != SolidKind::mesh) continue;
+        cluster_boxes[i] = cluster_box_of(view, i);
+        primitives.push_back(padded_primitive(cluster_boxes[i], 0, solids + i));
+    }
     const Tree tree = build_tree(primitives, 0);
     BallPlanes<Real> ball_planes(scene);
     for (const PlacedBall& placed : balls) {
         Ball<Real>& ball = scene.balls[scene.solids[placed.solid].first_slab];
         std::vector<uint32_t> near;
         for_each_in_box(tree, placed.box(), [&](uint32_t i) {
-            if (distance_to_box(boxes[i], placed.center) > placed.radius + reach) return;
-            if (scene.solids[i].kind == SolidKind::mesh)
+            const Box& box = i < solids ? boxes[i] : cluster_boxes[i - solids];
+            if (!is_near(placed, box, reach)) return;
+            if (i >= solids)
                 ball.near_meshes = 1;
             else if (const uint32_t plane = ball_planes.number_of(i, *planes[i]); plane != no_plane)
                 near.push_back(plane);
