@@ -54,14 +54,47 @@ bool is_near(const PlacedBall& ball, const Box& box, double reach) {
     return distance_to_box(box, ball.center) <= ball.radius + reach && farthest >= ball.radius - reach;
 }
 
-/// The planes of flat sheets near balls.
+/// Looks for the closed meshes and the flat sheets near balls.
 template <class Real>
-class BallPlanes {
+class NearBalls {
   public:
-    explicit BallPlanes(CompiledScene<Real>& scene) : scene_(scene) {}
+    NearBalls(CompiledScene<Real>& scene, const std::vector<Box>& boxes,
+              const std::vector<std::optional<PlaneEquation>>& planes)
+        : scene_(scene), boxes_(boxes), planes_(planes), solids_(uint32_t(scene.solids.size())) {
+        const SceneView<Real> view = scene.view();
+        std::vector<RTCBuildPrimitive> primitives;  // sheets by their numbers, then clusters of meshes
+        cluster_boxes_.resize(scene.clusters.size());
+        for (uint32_t i = 0; i < solids_; ++i)
+            if (planes[i]) primitives.push_back(padded_primitive(boxes[i], reach(), i));
+        for (uint32_t i = 0; i < scene.clusters.size(); ++i) {
+            if (scene.solids[scene.clusters[i].solid].kind != SolidKind::mesh) continue;
+            cluster_boxes_[i] = cluster_box_of(view, i);
+            primitives.push_back(padded_primitive(cluster_boxes_[i], 0, solids_ + i));
+        }
+        tree_ = build_tree(primitives, 0);
+    }
+
+    void find(const PlacedBall& placed, Ball<Real>& ball) {
+        std::vector<uint32_t> near;
+        for_each_in_box(tree_, placed.box(), [&](uint32_t i) {
+            if (!is_near(placed, i < solids_ ? boxes_[i] : cluster_boxes_[i - solids_], reach())) return;
+            if (i >= solids_)
+                ball.near_meshes = 1;
+            else if (const uint32_t plane = plane_of(i, *planes_[i]); plane != no_plane)
+                near.push_back(plane);
+        });
+        std::sort(near.begin(), near.end());
+        near.erase(std::unique(near.begin(), near.end()), near.end());
+        ball.first_plane = uint32_t(scene_.near_planes.size());
+        ball.plane_count = uint32_t(near.size());
+        scene_.near_planes.insert(scene_.near_planes.end(), near.begin(), near.end());
+    }
+
+  private:
+    double reach() const { return 2 * double(incidence<Real>) * double(scene_.extent); }
 
     /// The number of a sheet's plane among the scene's ball_planes, or no_plane if there are too many.
-    uint32_t number_of(uint32_t sheet, const PlaneEquation& own) {
+    uint32_t plane_of(uint32_t sheet, const PlaneEquation& own) {
         Solid& solid = scene_.solids[sheet];
         if (solid.first_group != 0) return solid.first_group - 1;
         BallPlane<Real> plane{Vec3<Real>(own.normal), Real(own.offset), no_plane};
@@ -80,7 +113,6 @@ class BallPlanes {
         return number;
     }
 
-  private:
     /// Whether two planes are one but for rounding, in either direction.
     bool is_same(const BallPlane<Real>& a, const BallPlane<Real>& b) const {
         if (a.shared != b.shared) return false;
@@ -91,6 +123,11 @@ class BallPlanes {
     }
 
     CompiledScene<Real>& scene_;
+    const std::vector<Box>& boxes_;
+    const std::vector<std::optional<PlaneEquation>>& planes_;
+    const uint32_t solids_;
+    std::vector<Box> cluster_boxes_;
+    Tree tree_;
 };
 
 }  // namespace
@@ -141,37 +178,8 @@ template <class Real>
 void find_near_balls(CompiledScene<Real>& scene, const std::vector<PlacedBall>& balls, const std::vector<Box>& boxes,
                      const std::vector<std::optional<PlaneEquation>>& planes) {
     if (balls.empty()) return;
-    const double reach = 2 * double(incidence<Real>) * double(scene.extent);
-    const auto solids = uint32_t(scene.solids.size());
-    const SceneView<Real> view = scene.view();
-    std::vector<RTCBuildPrimitive> primitives;  // sheets by their numbers, then clusters of meshes
-    std::vector<Box> cluster_boxes(scene.clusters.size());
-    for (uint32_t i = 0; i < solids; ++i)
-        if (planes[i]) primitives.push_back(padded_primitive(boxes[i], reach, i));
-    for (uint32_t i = 0; i < scene.clusters.size(); ++i) {
-        if (scene.solids[scene.clusters[i].solid].kind != SolidKind::mesh) continue;
-        cluster_boxes[i] = cluster_box_of(view, i);
-        primitives.push_back(padded_primitive(cluster_boxes[i], 0, solids + i));
-    }
-    const Tree tree = build_tree(primitives, 0);
-    BallPlanes<Real> ball_planes(scene);
-    for (const PlacedBall& placed : balls) {
-        Ball<Real>& ball = scene.balls[scene.solids[placed.solid].first_slab];
-        std::vector<uint32_t> near;
-        for_each_in_box(tree, placed.box(), [&](uint32_t i) {
-            const Box& box = i < solids ? boxes[i] : cluster_boxes[i - solids];
-            if (!is_near(placed, box, reach)) return;
-            if (i >= solids)
-                ball.near_meshes = 1;
-            else if (const uint32_t plane = ball_planes.number_of(i, *planes[i]); plane != no_plane)
-                near.push_back(plane);
-        });
-        std::sort(near.begin(), near.end());
-        near.erase(std::unique(near.begin(), near.end()), near.end());
-        ball.first_plane = uint32_t(scene.near_planes.size());
-        ball.plane_count = uint32_t(near.size());
-        scene.near_planes.insert(scene.near_planes.end(), near.begin(), near.end());
-    }
+    NearBalls<Real> near(scene, boxes, planes);
+    for (const PlacedBall& ball : balls) near.find(ball, scene.balls[scene.solids[ball.solid].first_slab]);
 }
 
 template void add_balls(CompiledScene<float>&, const std::vector<PlacedBall>&);
