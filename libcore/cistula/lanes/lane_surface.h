@@ -239,7 +239,7 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
             assign_where(same, s.normal, toward);
             assign_where(same, s.point, point);
             if (E::has(effect_spheres) && is_sheet_near_ball(scene.solids[scene.clusters[slot / cluster_lanes].solid]))
-                assign_where(same, s.viewer_side, off_sheet(scene.extent, point, toward));
+                assign_where(same, s.viewer_side, off_sheet(scene.extent, ray, hit.t, toward));
             else
                 assign_where(same, s.viewer_side, off_triangle(scene, slot, hit.enters, point));
         });

@@ -74,11 +74,13 @@ CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, [[maybe_unused]] const R
     }
 }
 
-/// The origin of rays that leave a flat sheet near balls: straight off it, since a step toward an apex goes up to 2^9 u
-/// M sideways, into a ball or out of it.
-template <class Real>
-CISTULA_INLINE Vec3<Real> off_sheet(ScalarOf<Real> extent, const Vec3<Real>& point, const Vec3<Real>& normal) {
-    return along(point, Real(8 * RealTraits<ScalarOf<Real>>::unit * extent), normal);
+/// The origin of rays that leave a flat sheet near balls where a ray meets it at t: straight off that place, which the
+/// order of crossings speaks of. (A step toward an apex goes up to 2^9 u M sideways, into a ball or out of it, and for
+/// a grazing ray a place from the triangle's corners lies far from t.)
+template <class Real, class Media>
+CISTULA_INLINE Vec3<Real> off_sheet(ScalarOf<Real> extent, const Ray<Real, Media>& ray, const Real& t,
+                                    const Vec3<Real>& normal) {
+    return along(along(ray.origin, t, ray.direction), Real(8 * RealTraits<ScalarOf<Real>>::unit * extent), normal);
 }
 
 /// The texture coordinates of a ball by its outward normal: longitude from -x over -y, x and y, and the angle to the
@@ -136,7 +138,7 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
         s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
         s.viewer_side = apex_at(scene, hit.slot, corner, s.normal, hit.enters).from(s.point);
         if constexpr (meets_balls<E, Media>)
-            if (is_sheet_near_ball(solid)) s.viewer_side = off_sheet(scene.extent, s.point, s.normal);
+            if (is_sheet_near_ball(solid)) s.viewer_side = off_sheet(scene.extent, ray, hit.t, s.normal);
     }
     if constexpr (E::has(effect_texture)) {
         if (material.texture >= 0) {
