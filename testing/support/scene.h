@@ -62,8 +62,7 @@ inline int add_material(SceneDescription& scene, double reflection = 0, double t
     return static_cast<int>(scene.materials.size()) - 1;
 }
 
-inline void add_object(SceneDescription& scene, std::variant<SolidObject, TrianglesObject, MeshObject> shape,
-                       int material) {
+inline void add_object(SceneDescription& scene, decltype(ObjectDescription::shape) shape, int material) {
     if (scene.materials.empty()) add_material(scene);
     ObjectDescription object;
     object.name = numbered("o", scene.objects.size());

@@ -120,7 +120,7 @@ class ConvexMeshes : public testing::Test {
     }
 
     /// The film of the room with a body of one of its materials; whether the body is given by planes.
-    static Film film(const std::variant<SolidObject, TrianglesObject, MeshObject>& body, int material, bool by_planes) {
+    static Film film(const decltype(ObjectDescription::shape)& body, int material, bool by_planes) {
         SceneDescription scene = lit_room();
         test::add_object(scene, body, material);
         const auto compiled = test::compile<Real>(scene);

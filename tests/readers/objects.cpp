@@ -26,6 +26,24 @@ Shape shape_of(const std::string& object) {
     return std::get<Shape>(read_objects(object).objects.at(0).shape);
 }
 
+TEST(SceneSpheres, EveryKeyArrives) {
+    const ObjectDescription object = read_objects(R"({"name": "ball", "solid": "sphere", "center": [1, 2, 3],
+        "radius": 4, "rotate": [5, 6, 7], "material": "tiles"})")
+                                         .objects.at(0);
+    EXPECT_EQ(object.name, "ball");
+    const auto& sphere = std::get<SphereObject>(object.shape);
+    EXPECT_EQ(sphere.center, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(sphere.radius, 4);
+    EXPECT_EQ(sphere.rotation, glm::dvec3(5, 6, 7));
+}
+
+TEST(SceneSpheres, HaveNoEdges) {
+    EXPECT_WRONG_OBJECT(R"({"solid": "sphere", "material": "glass", "edge_lights": {"count": 1}})",
+                        "/edge_lights: unknown key");
+    EXPECT_WRONG_OBJECT(R"({"solid": "spere", "material": "glass"})",
+                        "/solid: unknown value 'spere'; did you mean 'sphere'?");
+}
+
 TEST(SceneSolids, EveryKeyArrives) {
     const ObjectDescription object =
         read_objects(R"({"name": "gem", "solid": "icosahedron", "center": [1, 2, 3], "radius": 4,
@@ -62,12 +80,12 @@ TEST(SceneSolids, Errors) {
     EXPECT_WRONG_OBJECT(R"({"solid": "octahedrom", "material": "glass"})",
                         "/solid: unknown value 'octahedrom'; did you mean 'octahedron'?");
     std::string names;
-    for (const KeyTable* table : {&box_keys, &convex_keys, &prism_keys, &solid_keys})
+    for (const KeyTable* table : {&sphere_keys, &box_keys, &convex_keys, &prism_keys, &solid_keys})
         for (const std::string_view name : table->find("solid")->choices)
             names += (names.empty() ? "" : ", ") + std::string(name);
-    EXPECT_WRONG_OBJECT(
-        R"({"solid": "torus", "material": "glass"})",
-        "/solid: unknown value 'torus'; known values: " + names.substr(0, names.find(", snub-cube")) + ", ...");
+    EXPECT_WRONG_OBJECT(R"({"solid": "torus", "material": "glass"})",
+                        "/solid: unknown value 'torus'; known values: " +
+                            names.substr(0, names.find(", truncated-cuboctahedron")) + ", ...");
     EXPECT_WRONG_OBJECT(R"({"solid": "truncatedcube", "material": "glass"})",
                         "/solid: unknown value 'truncatedcube'; did you mean 'truncated-cube'?");
     EXPECT_WRONG_OBJECT(R"({"solid": 8, "material": "glass"})", "/solid: expected one of " + names + ", found 8");

@@ -1,4 +1,5 @@
-// Sine, cosine and tangent in double with the same bits on every machine, for every finite argument (see elementary.h).
+// Sine, cosine, tangent and atan2 in double with the same bits on every machine, for every finite argument (see
+// elementary.h).
 #pragma once
 
 #include "cistula/numerics/elementary.h"
@@ -8,6 +9,7 @@ namespace cistula::elementary {
 inline constexpr double sin_worst_ulp = 0.75;
 inline constexpr double cos_worst_ulp = 0.75;
 inline constexpr double tan_worst_ulp = 0.90;
+inline constexpr double atan2_worst_ulp = 0.51;
 
 /// An angle in radians minus `quadrant` quarter turns: high + low in [-pi / 4, pi / 4], to within a few ulps. quadrant
 /// is 0 to 3.
@@ -133,6 +135,65 @@ CISTULA_HD inline double tan(double x) {
     const DoubleDouble below = r.quadrant & 1 ? DoubleDouble{-s.high, -s.low} : c;
     const double quotient = above.high / below.high;
     return quotient + (fused(-quotient, below.high, above.high) + (above.low - quotient * below.low)) / below.high;
+}
+
+/// atan(y / x) for 0 <= y <= x, x > 0. With y / x = k / 16 + r it is atan(k / 16) + atan(z), z = (y - x k / 16) / (x +
+/// y k / 16), of which Taylor's series to z^11 is exact to 2^-62: |z| <= 1 / 32.
+CISTULA_HD inline DoubleDouble atan_of_quotient(double y, double x) {
+    constexpr DoubleDouble of_sixteenths[] = {{0, 0},
+                                              {0x1.ff55bb72cfdeap-5, -0x1.c934d86d23f1dp-60},
+                                              {0x1.fd5ba9aac2f6ep-4, -0x1.cd37686760c17p-59},
+                                              {0x1.7b97b4bce5b02p-3, 0x1.347b0b4f881cap-58},
+                                              {0x1.f5b75f92c80ddp-3, 0x1.8ab6e3cf7afbdp-57},
+                                              {0x1.362773707ebccp-2, -0x1.963a544b672d8p-57},
+                                              {0x1.6f61941e4def1p-2, -0x1.c63aae6f6e918p-56},
+                                              {0x1.a64eec3cc23fdp-2, -0x1.24dec1b50b7ffp-56},
+                                              {0x1.dac670561bb4fp-2, 0x1.a2b7f222f65e2p-56},
+                                              {0x1.0657e94db30dp-1, -0x1.d5b495f6349e6p-56},
+                                              {0x1.1e00babdefeb4p-1, -0x1.928df287a668fp-58},
+                                              {0x1.345f01cce37bbp-1, 0x1.1021137c71102p-55},
+                                              {0x1.4978fa3269ee1p-1, 0x1.2419a87f2a458p-56},
+                                              {0x1.5d58987169b18p-1, 0x1.0028e4bc5e7cap-57},
+                                              {0x1.700a7c5784634p-1, -0x1.8c34d25aadef6p-56},
+                                              {0x1.819d0b7158a4dp-1, -0x1.bf76229d3b917p-56},
+                                              {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55}};
+    constexpr double series[] = {-1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9, -1.0 / 11};
+    const double k = floor_of(fused(y / x, 16, 0.5));
+    const double c = k * 0x1p-4;
+    const DoubleDouble product = two_product(c, x);  // exact: c has five bits
+    const double over = y - product.high;
+    const double below = fused(c, y, x);
+    const double lost = fused(c, y, x - below);
+    const double above = over - product.low;
+    const double z = above / below;
+    const double rest = (fused(-z, below, above) + ((over - above) - product.low) - z * lost) / below;
+    const double square = z * z;
+    const double tail = fused(z * square, polynomial(square, series), rest);
+    const DoubleDouble start = of_sixteenths[static_cast<int>(k)];
+    const double sum = start.high + z;
+    const double back = sum - start.high;
+    return {sum, (start.high - (sum - back)) + (z - back) + (start.low + tail)};
+}
+
+/// The angle of (x, y) from the x axis in [-pi, pi], for finite numbers; 0 at the origin. Exactly odd in y; zeros have
+/// no sign.
+CISTULA_HD inline double atan2(double y, double x) {
+    constexpr double pi_half_hi = 0x1.921fb54442d18p+0;
+    constexpr double pi_half_lo = 0x1.1a62633145c07p-54;
+    const double ax = magnitude(x);
+    const double ay = magnitude(y);
+    if (ax == 0 && ay == 0) return 0;
+    const bool steep = ay > ax;
+    DoubleDouble angle = atan_of_quotient(steep ? ax : ay, steep ? ay : ax);
+    for (int turns = 1; turns <= 2; ++turns) {  // the angle from the y axis, then from the negative x axis
+        if (!(turns == 1 ? steep : x < 0)) continue;
+        const double whole = turns * pi_half_hi;
+        const double sum = whole - angle.high;
+        const double back = whole - sum;
+        angle = {sum, (whole - (sum + back)) + (back - angle.high) + (turns * pi_half_lo - angle.low)};
+    }
+    const double value = angle.high + angle.low;
+    return y < 0 ? -value : value;
 }
 
 }  // namespace cistula::elementary

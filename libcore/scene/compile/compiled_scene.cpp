@@ -27,6 +27,15 @@ Box convex_box(const SceneView<Real>& scene, const Solid& solid) {
     return box;
 }
 
+/// The box of a convex solid or a ball.
+template <class Real>
+Box solid_box(const SceneView<Real>& scene, const Solid& solid) {
+    if (!is_ball(solid)) return convex_box(scene, solid);
+    const dvec3 center(scene.balls[solid.first_slab].center);
+    const dvec3 radius(double(scene.balls[solid.first_slab].radius));
+    return {center - radius, center + radius};
+}
+
 template <class Real>
 Box cluster_box(const Cluster<Real>& cluster) {
     Box box;
@@ -39,7 +48,7 @@ Box cluster_box(const Cluster<Real>& cluster) {
 template <class Real>
 RTCBuildPrimitive boxed_primitive(const SceneView<Real>& scene, uint32_t primitive) {
     const bool convex = primitive < scene.convex.size;
-    const Box box = convex ? convex_box(scene, scene.solids[scene.convex[primitive]])
+    const Box box = convex ? solid_box(scene, scene.solids[scene.convex[primitive]])
                            : cluster_box(scene.clusters[primitive - scene.convex.size]);
     return padded_primitive(box, 0x1p-18 * static_cast<double>(scene.extent), primitive);
 }
@@ -57,6 +66,8 @@ SceneView<Real> CompiledScene<Real>::view() const {
     v.triangle_planes = span_of(triangle_planes);
     v.near_planes = span_of(near_planes);
     v.plane_solids = span_of(plane_solids);
+    v.balls = span_of(balls);
+    v.ball_planes = span_of(ball_planes);
     v.convex = span_of(convex);
     v.clusters = span_of(clusters);
     v.uvs = span_of(uvs);
@@ -83,9 +94,10 @@ size_t CompiledScene<Real>::memory() const {
     for (const Hull& hull : hulls) outlined += bytes_of(hull.points);
     return outlined + bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) +
            bytes_of(shared_planes) + bytes_of(slab_planes) + bytes_of(triangle_planes) + bytes_of(near_planes) +
-           bytes_of(plane_solids) + bytes_of(clusters) + bytes_of(uvs) + bytes_of(materials) + bytes_of(lights) +
-           bytes_of(incidents) + bytes_of(visible_lights) + bytes_of(textures) + bytes_of(texels) + bytes_of(tree) +
-           bytes_of(tree_items) + bytes_of(visible_light_tree) + bytes_of(light_groups);
+           bytes_of(plane_solids) + bytes_of(balls) + bytes_of(ball_planes) + bytes_of(clusters) + bytes_of(uvs) +
+           bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(visible_lights) +
+           bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
+           bytes_of(visible_light_tree) + bytes_of(light_groups);
 }
 
 template <class Real>

@@ -56,6 +56,8 @@ Box world_box(const SceneSource& source) {
     for (const SourceSolid& solid : source.solids) {
         if (solid.platonic) {
             add_solid(box, *solid.platonic);
+        } else if (solid.sphere) {
+            add_sphere(box, solid.sphere->center, solid.sphere->radius);
         } else {
             for (const glm::dvec3& p : solid.mesh.vertices)
                 if (is_finite(p)) box.add(p);

@@ -182,6 +182,9 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
                     description, object.place,
                     "with the lights on its edges the scene has more than " + std::to_string(most_lights) + " lights",
                     "lower its count");
+        } else if (const auto* sphere = std::get_if<SphereObject>(&object.shape)) {
+            solid_fields(*sphere, FieldCheck(description, object.place, solid_keys));
+            solid.sphere = sphere;
         } else {
             const auto& triangles = std::get<TrianglesObject>(object.shape);
             solid.mesh.vertices = triangles.vertices;
@@ -199,7 +202,7 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
     require_different_names(source);
     for (const SourceSolid& solid : source.solids) {
         const MaterialDescription& material = source.materials[solid.material];
-        if (material.texture < 0) continue;
+        if (material.texture < 0 || solid.sphere) continue;
         const std::string what = "the material " + material.name + " has a texture, but ";
         if (solid.platonic)
             throw scene_error(description, solid.place,

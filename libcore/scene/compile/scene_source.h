@@ -18,7 +18,8 @@ namespace cistula {
 struct SourceSolid {
     std::string name, place;
     uint32_t material = 0;                  // index into SceneSource::materials
-    const SolidObject* platonic = nullptr;  // null: the solid is `mesh`
+    const SolidObject* platonic = nullptr;  // null: the solid is `sphere` or, without one, `mesh`
+    const SphereObject* sphere = nullptr;
     /// The triangles that are rendered, in file order; those of a closed mesh counter-clockwise seen from outside.
     MeshSource mesh;
     MeshEdges edges;              // of the mesh, if they were found when it was found to be closed; else none

@@ -84,6 +84,13 @@ struct SolidObject {
     EdgeLights edge_lights;
 };
 
+/// A solid sphere. A texture's longitudes run about its z axis, which `rotation` turns.
+struct SphereObject {
+    glm::dvec3 center{0};
+    double radius = 1;
+    glm::dvec3 rotation{0};  // degrees about x, then y, then z
+};
+
 /// A mesh given in the scene file. Closed meshes become solids with an inside, others are sheets seen from both sides.
 /// Convex solids with flat faces are given by planes, unless they keep their triangles.
 struct TrianglesObject {
@@ -106,7 +113,7 @@ struct MeshObject {
 struct ObjectDescription {
     std::string name;
     int material = -1;  // -1 only for a mesh that brings its own
-    std::variant<SolidObject, TrianglesObject, MeshObject> shape;
+    std::variant<SolidObject, SphereObject, TrianglesObject, MeshObject> shape;
     std::string place;  // JSON pointer of the object in the file, for messages: "/objects/2"
 };
 

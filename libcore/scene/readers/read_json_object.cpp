@@ -42,7 +42,7 @@ EdgeLights read_edge_lights(const JsonValue& value) {
     return lights;
 }
 
-const KeyTable* const solid_tables[] = {&box_keys, &convex_keys, &prism_keys,
+const KeyTable* const solid_tables[] = {&sphere_keys, &box_keys, &convex_keys, &prism_keys,
                                         &solid_keys};  // messages name these first
 
 /// The keys of a solid, told by its name.
@@ -117,10 +117,17 @@ std::shared_ptr<const Polyhedron> read_body(JsonObject& keys, const KeyTable& ta
 }
 
 void read_solid(const JsonValue& value, const ObjectContext& context, ObjectDescription& object) {
-    SolidObject solid;
     const KeyTable& table = table_of_solid(value);
     JsonObject keys(value, table);
     read_common(keys, context, object);
+    if (&table == &sphere_keys) {
+        SphereObject sphere;
+        solid_fields(sphere, [&](std::string_view key, auto& field) { keys.read(key, field); });
+        keys.finish();
+        object.shape = sphere;
+        return;
+    }
+    SolidObject solid;
     const int kind = keys.read_choice("solid");
     if (&table != &solid_keys)
         solid.body = read_body(keys, table);

@@ -18,6 +18,7 @@ constexpr Range size{least_length, most};
 constexpr Range share{0, 1};
 constexpr Range angle{-most_angle, most_angle};
 
+constexpr std::string_view sphere_choices[] = {"sphere"};
 constexpr std::string_view solid_choices[] = {"tetrahedron",
                                               "cube",
                                               "octahedron",
@@ -159,6 +160,15 @@ constexpr Key solid_list[] = {
     other("edge_lights"),
 };
 
+constexpr Key sphere_list[] = {
+    text("name"),
+    choice("solid", sphere_choices, {}),
+    point("center", anywhere, "[0, 0, 0]"),
+    number("radius", size, "1"),
+    point("rotate", angle, "[0, 0, 0]"),
+    text("material", required),
+};
+
 constexpr Key box_list[] = {
     text("name"),
     choice("solid", box_choices, {}),
@@ -256,6 +266,7 @@ constexpr KeyTable texture_file_keys{"texture_file", texture_file_list};
 constexpr KeyTable texture_checker_keys{"texture_checker", texture_checker_list};
 constexpr KeyTable material_keys{"material", material_list};
 constexpr KeyTable solid_keys{"solid", solid_list};
+constexpr KeyTable sphere_keys{"sphere", sphere_list};
 constexpr KeyTable box_keys{"box", box_list};
 constexpr KeyTable convex_keys{"convex", convex_list};
 constexpr KeyTable prism_keys{"prism", prism_list};

@@ -2,6 +2,7 @@
 
 namespace cistula::verify {
 
+void add_balls(Cases& cases);
 void add_bodies(Cases& cases);
 void add_contact(Cases& cases);
 void add_digits(Cases& cases);
@@ -22,6 +23,7 @@ const std::vector<Case>& all_cases() {
             cases.group = group;
             cases_of(cases);
         };
+        add("balls/", add_balls);
         add("bodies/", add_bodies);
         add("contact/", add_contact);
         add("digits/", add_digits);

@@ -45,7 +45,7 @@ std::shared_ptr<const Polyhedron> other_body(size_t number) {
     return bodies[number % std::size(bodies)];
 }
 
-using Shape = std::variant<SolidObject, TrianglesObject, MeshObject>;
+using Shape = decltype(ObjectDescription::shape);
 
 /// Adds a floor, walls and sheets, then groups of closed bodies, with their materials.
 class Objects : Part {

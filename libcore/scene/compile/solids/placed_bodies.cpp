@@ -45,9 +45,11 @@ PlacedBodies::PlacedBodies(const SceneSource& source) : normalization(find_norma
         const SourceSolid& solid = source.solids[i];
         if (solid.platonic)
             by_planes[i] = convex_solid(*solid.platonic, i, normalization);
-        else
+        else if (!solid.sphere)
             sizes[i] = mesh_size(solid.mesh, normalization, least_share(Precision::double_) * normalization.extent);
     });
+    for (uint32_t i = 0; i < count; ++i)
+        if (source.solids[i].sphere) balls.emplace_back(*source.solids[i].sphere, i, normalization);
     std::vector<ConvexSolid> platonic;
     for (std::optional<ConvexSolid>& solid : by_planes)
         if (solid) platonic.push_back(std::move(*solid));
