@@ -120,6 +120,7 @@ void read_solid(const JsonValue& value, const ObjectContext& context, ObjectDesc
     const KeyTable& table = table_of_solid(value);
     JsonObject keys(value, table);
     read_common(keys, context, object);
+    const int kind = keys.read_choice("solid");
     if (&table == &sphere_keys) {
         SphereObject sphere;
         solid_fields(sphere, [&](std::string_view key, auto& field) { keys.read(key, field); });
@@ -128,7 +129,6 @@ void read_solid(const JsonValue& value, const ObjectContext& context, ObjectDesc
         return;
     }
     SolidObject solid;
-    const int kind = keys.read_choice("solid");
     if (&table != &solid_keys)
         solid.body = read_body(keys, table);
     else if (kind <= static_cast<int>(PlatonicSolid::icosahedron))
