@@ -55,6 +55,7 @@ class SceneDump {
         const EdgeLights& e = s.edge_lights;
         line(" edge lights", e.count, e.color, e.glow, e.radius, e.visible, e.falloff);
     }
+    void write(const SphereObject& s) { line(" sphere", s.center, s.radius, s.rotation); }
     void write(const TrianglesObject& t) {
         for (const auto& vertex : t.vertices) line(" vertex", vertex);
         for (const auto& triangle : t.triangles) line(" triangle", triangle[0], triangle[1], triangle[2]);
