@@ -39,7 +39,7 @@ TEST(SceneSpheres, EveryKeyArrives) {
 
 TEST(SceneSpheres, HaveNoEdges) {
     EXPECT_WRONG_OBJECT(R"({"solid": "sphere", "material": "glass", "edge_lights": {"count": 1}})",
-                        "/edge_lights: unknown key");
+                        "/edge_lights: unknown key; known keys: name, solid, center, radius, rotate, material");
     EXPECT_WRONG_OBJECT(R"({"solid": "spere", "material": "glass"})",
                         "/solid: unknown value 'spere'; did you mean 'sphere'?");
 }

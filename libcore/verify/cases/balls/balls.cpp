@@ -44,8 +44,8 @@ SceneDescription view(double unit = 1) {
     scene.camera.position = glm::dvec3(0, -6, 3) * unit;
     scene.camera.target = glm::dvec3(0, 0, 0.8) * unit;
     scene.camera.field_of_view = 50;
-    add_checker(scene, glm::dvec2(8));
-    add_object(scene, parallelogram(glm::dvec3(-8, -8, 0) * unit, {16 * unit, 0, 0}, {0, 16 * unit, 0}));
+    add_checker(scene, glm::dvec2(0.5 / unit));
+    add_object(scene, floor_of_half(8 * unit));
     add_light(scene, glm::dvec3(3, -3, 8) * unit);
     return scene;
 }
@@ -143,7 +143,7 @@ void add_balls(Cases& cases) {
                         no_failures("rays", needs_witness), through_balls(Outline{false}, 1.5, 1'000'000, 20000));
     cases.rays<Outline>("broken/textbook-discriminant", "b^2 - (f.f - r^2) misses outlines", must_fail(1, "rays"),
                         through_balls(Outline{true}, 1.5, 1'000'000, 20000));
-    cases.rays<Focus>("focus", "a ray through a glass ball turns by 2 (i - t)", at_most(64, "u"),
+    cases.rays<Focus>("focus", "a ray through a glass ball turns by 2 (i - t)", at_most(64, "u M / r"),
                       through_balls(Focus{}, 1.5, 400'000, 10000));
     cases.rays<Bounces>("bounces", "all chords of a line inside a ball have one length", at_most(128, "u M"),
                         through_balls(Bounces{}, 1.5, 200'000, 5000));

@@ -23,9 +23,13 @@ struct Outline {
         const Vec3<double> to_center = center - Vec3<double>(origin);
         Vec3<double> beside = on_sphere(draw);
         beside -= dot(beside, to_center) / dot(to_center, to_center) * to_center;
-        // The tangent's foot, off by up to 2^-2 to 2^-26 of the radius.
-        const double off = draw.centered<double>(1.0) * elementary::power_of_two(-int(draw.between(2, 26)));
-        const Vec3<Real> direction(normalized(to_center + normalized(beside) * (radius * (1 + off))));
+        // The tangent's foot, off by up to 2^-2 to 2^-26 of the radius, 2^-55 in double.
+        const double off =
+            draw.centered<double>(1.0) * elementary::power_of_two(-int(draw.between(2, sizeof(Real) == 4 ? 26 : 55)));
+        const double far = length(to_center);
+        const double sine = radius * (1 + off) / far;  // of the angle between the ray and the center
+        const Vec3<Real> direction(
+            normalized(to_center + normalized(beside) * (far * sine / square_root(1 - sine * sine))));
         const Vec3<double> d(direction);
         const double along_line = dot(to_center, d) / dot(d, d);
         const Vec3<double> across = to_center - along_line * d;
@@ -41,6 +45,7 @@ struct Outline {
             if (found) t = double(b - square_root(discriminant));
         } else {
             const Hit<Real> hit = intersector.closest(ray_from(origin, direction));
+            if (hit.found() && key_solid(hit.key) != 0) return;  // another ball is before it
             found = hit.found();
             if (found) t = double(hit.t);
         }
@@ -52,7 +57,8 @@ struct Outline {
 };
 
 /// A ray in the plane of the axis through a glass ball, parallel to the axis: it leaves turned by 2 (i - t), with sin i
-/// its distance from the axis over the radius, sin t = sin i / index. Point 0: the center; numbers: radius, index.
+/// its distance from the axis over the radius, sin t = sin i / index. A place is off by some u M, so an angle by u M /
+/// r. Point 0: the center; numbers: radius, index.
 struct Focus {
     template <class Real, class Tracer>
     CISTULA_HD void operator()(const Setup<Real>& setup, const Tracer& intersector, uint64_t i, Tally& tally) const {
@@ -68,7 +74,7 @@ struct Focus {
         const Vec3<Real> origin(center + up * (radius * wanted) - d * (2 * radius));
         Lines<Real> lines;
         trace(setup, intersector, ray_from(origin, Vec3<Real>(d)), lines);
-        const bool passes = lines.flags == 0 && lines.count == 3;
+        const bool passes = lines.flags == 0 && lines.count >= 3;  // or more, beyond the ball
         tally.expect(passes);
         if (!passes) return;
         const Vec3<double> in(lines.direction[0]);
@@ -84,7 +90,7 @@ struct Focus {
         const Vec3<double> toward_axis = height > 0 ? across / -height : Vec3<double>(0.0);
         const Vec3<double> out =
             in * (half_cosine * half_cosine - half_sine * half_sine) + toward_axis * (2 * half_sine * half_cosine);
-        tally.measure(length(Vec3<double>(lines.direction[2]) - out) / double(RealTraits<Real>::unit));
+        tally.measure(length(Vec3<double>(lines.direction[2]) - out) * radius / setup.units(1));
     }
 };
 
