@@ -21,9 +21,7 @@ static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free && std::atomi
 constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 constexpr size_t signal_count = std::size(signals);
 struct sigaction previous[signal_count];
-int guards = 0;
-
-char program_name[64] = "render";
+char program_name[64];
 
 void on_signal(int number, siginfo_t* info, void*) {
     if (number == SIGPIPE && info->si_pid == getpid()) return;  // by a write of this process, which fails
@@ -41,7 +39,6 @@ void on_signal(int number, siginfo_t* info, void*) {
 }  // namespace
 
 InterruptGuard::InterruptGuard(const char* program) {
-    if (guards++ > 0) return;
     strncpy(program_name, program, sizeof program_name - 1);
     struct sigaction action = {};
     action.sa_sigaction = on_signal;
@@ -55,13 +52,15 @@ InterruptGuard::InterruptGuard(const char* program) {
 }
 
 InterruptGuard::~InterruptGuard() {
-    watched = nullptr;
-    if (--guards > 0) return;
     for (size_t i = 0; i < signal_count; ++i) sigaction(signals[i], &previous[i], nullptr);
 }
 
-void InterruptGuard::watch(std::atomic<bool>& stop) {
+StopOnInterrupt::StopOnInterrupt(std::atomic<bool>& stop) {
     watched = &stop;
+}
+
+StopOnInterrupt::~StopOnInterrupt() {
+    watched = nullptr;
 }
 
 namespace {

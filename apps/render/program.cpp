@@ -89,7 +89,7 @@ class ToldSequence : public SequenceProgress {
 
     void planned(const FrameSettings& settings) override {
         memory_advice_ = advice_on_memory(request_, settings);
-        guard_.emplace().watch(stop_);
+        watch_.emplace(stop_);
     }
 
     void ready(const RunStats& stats) override {
@@ -120,13 +120,13 @@ class ToldSequence : public SequenceProgress {
     const RenderRequest& request_;
     std::atomic<bool>& stop_;
     std::string& memory_advice_;
-    std::optional<InterruptGuard> guard_;
+    std::optional<StopOnInterrupt> watch_;
 };
 
 void render_scene(const RenderRequest& request, std::string& memory_advice) {
     SnapshotRequests snapshots;
     const UserSignal user_signal(snapshots);
-    RenderProgress progress;  // must outlive the guard
+    RenderProgress progress;  // must outlive what watches
     ToldSequence told(request, progress, memory_advice);
     on_threads(request, [&] { render_sequence(request, told, progress, &snapshots); });
 }
@@ -147,9 +147,8 @@ void measure_scene(const RenderRequest& request) {
     const ChosenDevices devices = choose_devices(request.backend, request.devices);
     const SceneDescription scene = read_frame(request);
     const FrameSettings settings = frame_settings(request, scene);
-    StepProgress progress(request.quiet ? ProgressStyle::none : request.progress);  // must outlive the guard
-    InterruptGuard guard;
-    guard.watch(progress.render.stop);
+    StepProgress progress(request.quiet ? ProgressStyle::none : request.progress);  // must outlive what watches
+    const StopOnInterrupt watch(progress.render.stop);
     on_threads(request, [&] {
         const StopSignal stop(progress.render.stop);
         SceneSource source = gather_scene(scene, stop);
@@ -219,9 +218,8 @@ void write_explorer(const RenderCommand& request) {
     const SceneDescription description = read_frame(request);
     FrameSettings settings = frame_settings(request, description);
     const CameraFrame camera = camera_at(description.camera, request.frames.empty() ? 0 : request.frames.front());
-    RenderProgress progress;  // must outlive the guard
-    InterruptGuard guard;
-    guard.watch(progress.stop);
+    RenderProgress progress;  // must outlive what watches
+    const StopOnInterrupt watch(progress.stop);
     const StopSignal stop(progress.stop);
     on_threads(request, [&] {
         SceneSource source = gather_scene(description, stop);

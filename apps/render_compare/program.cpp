@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -124,9 +125,9 @@ Judged judge_several(const CompareOptions& options, StopSignal stop) {
 
 bool compare_images(const CompareOptions& options) {
     std::atomic<bool> stop = false;
-    InterruptGuard guard;
+    std::optional<StopOnInterrupt> watch;
     // FLIP has files and processes to leave in order; nothing else does.
-    if (options.selection.flip || options.thresholds.flip) guard.watch(stop);
+    if (options.selection.flip || options.thresholds.flip) watch.emplace(stop);
     const Judged judged =
         names_several(options.a) ? judge_several(options, stop) : judge_files(options, options.a, options.b, stop);
     const std::string json = judged.json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

@@ -77,8 +77,7 @@ int run(const VerifyOptions& options, const std::vector<CaseName>& cases) {
     const size_t width = widest(cases);
     const std::vector<Row> rows = [&] {
         StepProgress progress(ProgressStyle::automatic);
-        InterruptGuard guard;
-        guard.watch(progress.render.stop);
+        const StopOnInterrupt watch(progress.render.stop);
         print(table_head(width));
         progress.begin("cases", static_cast<double>(cases.size() * settings.precisions.size()));
         Options with_events = settings;

@@ -35,8 +35,8 @@ TEST(InterruptDeathTest, TheFirstSignalSetsTheFlag) {
             {
                 default_signals();
                 std::atomic<bool> stop{false};
-                InterruptGuard guard;
-                guard.watch(stop);
+                const InterruptGuard guard("render");
+                const StopOnInterrupt watch(stop);
                 const bool before = stop;
                 std::raise(number);
                 report(!before && stop);
@@ -50,8 +50,8 @@ TEST(InterruptDeathTest, TheSecondSignalEndsTheProgramAtOnce) {
             {
                 default_signals();
                 std::atomic<bool> stop{false};
-                InterruptGuard guard;
-                guard.watch(stop);
+                const InterruptGuard guard("render");
+                const StopOnInterrupt watch(stop);
                 std::raise(SIGINT);
                 std::raise(number);
                 report(false);
@@ -65,8 +65,9 @@ TEST(InterruptDeathTest, NoTemporaryIsLeft) {
     EXPECT_EXIT(
         {
             default_signals();
-            const InterruptGuard outer("render-merge");
-            { const InterruptGuard inner; }  // is the same one
+            const InterruptGuard guard("render-merge");
+            std::atomic<bool> stop{false};
+            { const StopOnInterrupt watch(stop); }  // watches no more
             const AtomicFile file(path);
             if (scratch.names().empty()) report(false);
             std::raise(SIGTERM);
@@ -88,8 +89,8 @@ TEST(InterruptDeathTest, ABrokenPipeIsNoInterruptionButSigpipeOfOthersIs) {
         {
             default_signals();
             std::atomic<bool> stop{false};
-            InterruptGuard guard;
-            guard.watch(stop);
+            const InterruptGuard guard("render");
+            const StopOnInterrupt watch(stop);
             int ends[2];
             bool good = pipe(ends) == 0 && close(ends[0]) == 0;
             good &= write(ends[1], "x", 1) < 0 && errno == EPIPE && !stop;
@@ -103,7 +104,7 @@ TEST(InterruptDeathTest, BeforeAnythingRendersItEndsTheProgramAtOnce) {
     EXPECT_EXIT(
         {
             default_signals();
-            InterruptGuard guard;
+            const InterruptGuard guard("render");
             std::raise(SIGINT);
             report(false);
         },
@@ -116,8 +117,8 @@ TEST(InterruptDeathTest, IgnoredSignalsStayIgnored) {
             default_signals();
             std::signal(SIGINT, SIG_IGN);
             std::atomic<bool> stop{false};
-            InterruptGuard guard;
-            guard.watch(stop);
+            const InterruptGuard guard("render");
+            const StopOnInterrupt watch(stop);
             std::raise(SIGINT);
             report(!stop);
         },
@@ -128,7 +129,7 @@ TEST(InterruptDeathTest, TheOldDispositionComesBack) {
     EXPECT_EXIT(
         {
             default_signals();
-            { InterruptGuard guard; }
+            { const InterruptGuard guard("render"); }
             std::raise(SIGTERM);
             report(false);
         },
