@@ -152,6 +152,9 @@ struct LaneScene : SceneView<Real> {
     bool has_opaque_fresnel = false;  // whether any opaque material is
     bool has_ball_starts = false;     // whether meshes or flat sheets are near balls
     SolidTables<Real> tables;
+
+    /// Whether lanes may give rays back, to be traced by themselves.
+    CISTULA_INLINE bool may_stray() const { return meshes.any || named || has_ball_starts || kin.any; }
 };
 
 }  // namespace cistula
