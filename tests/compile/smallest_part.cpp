@@ -73,6 +73,14 @@ TEST(SmallestPart, ASolidThatIsAPointInDoubleIsRefused) {
     }
 }
 
+TEST(SmallestPart, TheSizeOfABodyOfPlanesIsThatOfItsCorners) {
+    SolidObject large;
+    large.body = std::make_shared<const Polyhedron>(box_body(glm::dvec3(1e17)));  // at a scale of 1
+    SceneDescription scene = empty_scene();
+    add_object(scene, large);
+    EXPECT_GT(smallest_part(scene).share, 0.1);
+}
+
 TEST(SmallestPart, TheCameraDoesNotMatter) {
     SceneDescription scene = floor_scene();
     add_object(scene, cube({0, 0, 4}, 1));

@@ -408,3 +408,15 @@ def test_without_anywidget_it_says_what_to_install(source: Path, monkeypatch: py
     monkeypatch.setitem(sys.modules, "anywidget", None)
     with pytest.raises(ImportError, match="pip install"):
         cistula.Scene.load(source / "scenes" / "glass.json").render(size=(16, 9)).explore()
+
+
+def test_bodies_have_their_own_wires(tmp_path: Path) -> None:
+    scene = cistula.Scene.from_dict({
+        "camera": {"position": [0, -9, 0], "target": [0, 0, 0]}, "materials": {"m": {}}, "lights": [{"position": [0, -5, 9]}],
+        "objects": [{"solid": "box", "size": [2, 4, 6], "material": "m"}, {"solid": "sphere", "center": [9, 0, 0], "radius": 2, "material": "m"}]})
+    scene.render(size=(16, 9)).explore(tmp_path / "p.html")
+    box, ball = (np.array(wires) + [0, -9, 0] for wires in data_of(tmp_path / "p.html")["bodies"])
+    assert box.shape == (12, 2, 3)
+    assert (np.abs(box) == [1, 2, 3]).all()
+    assert ball.shape == (72, 2, 3)
+    np.testing.assert_allclose(np.linalg.norm(ball - [9, 0, 0], axis=-1), 2, rtol=1e-4)

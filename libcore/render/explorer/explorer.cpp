@@ -12,6 +12,7 @@
 #include <cmath>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "base/file_bytes.h"
 #include "cistula/numerics/vec.h"
@@ -105,16 +106,35 @@ std::vector<uint32_t> drawn_halves(const MeshSource& mesh, const std::vector<uin
     return drawn;
 }
 
+/// Adds the great circles of a sphere across the axes, each as 24 edges.
+void add_circles(const SphereObject& sphere, Wireframe& wires) {
+    constexpr int count = 24;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto at = [&](int i) {
+            const double angle = 2 * std::numbers::pi * i / count;
+            glm::dvec3 p = sphere.center;
+            p[(axis + 1) % 3] += sphere.radius * std::cos(angle);
+            p[(axis + 2) % 3] += sphere.radius * std::sin(angle);
+            return p;
+        };
+        for (int i = 0; i < count; ++i) wires.push_back({at(i), at(i + 1)});
+    }
+}
+
 }  // namespace
 
 std::vector<Wireframe> wireframes(const SceneSource& source, size_t most) {
     std::vector<Wireframe> all;
     for (const SourceSolid& solid : source.solids) {
         Wireframe& wires = all.emplace_back();
-        if (solid.platonic) {
-            const std::vector<glm::dvec3> vertices = world_vertices(*solid.platonic);
-            for (const auto& [ends, faces] : platonic_shape(solid.platonic->solid).edges)
+        if (solid.polyhedron) {
+            const std::vector<glm::dvec3> vertices = world_vertices(*solid.polyhedron);
+            for (const auto& [ends, faces] : polyhedron_of(*solid.polyhedron).edges)
                 wires.push_back({vertices[ends[0]], vertices[ends[1]]});
+            continue;
+        }
+        if (solid.sphere) {
+            add_circles(*solid.sphere, wires);
             continue;
         }
         const MeshSource& mesh = solid.mesh;

@@ -17,7 +17,8 @@ namespace cistula {
 /// The files beside this, by CMake; the page has the others in it, and /*DATA*/ where data go.
 extern const std::string_view explorer_page, explorer_style, explorer_script;
 
-/// The edges of a solid as pairs of points in scene units, without those between triangles in one plane.
+/// The edges of a solid as pairs of points in scene units, without those between triangles in one plane; of a sphere
+/// three great circles.
 using Wireframe = std::vector<std::array<glm::dvec3, 2>>;
 
 /// The wireframe of each solid; of a mesh with over `most` edges every n-th.

@@ -110,8 +110,8 @@ class Compiler {
   private:
     void compile_convex() {
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
-            if (!source_.solids[i].platonic) continue;
-            for (const PlanePair& p : convex_solid(*source_.solids[i].platonic, i, normalization_).planes) {
+            if (!source_.solids[i].polyhedron) continue;
+            for (const PlanePair& p : convex_solid(*source_.solids[i].polyhedron, i, normalization_).planes) {
                 hash_.add(p.normal);
                 hash_.add(p.low);
                 hash_.add(p.high);
@@ -268,12 +268,12 @@ class Compiler {
         for (uint32_t first = 0, end = 0; first < count; first = end) {
             for (size_t triangles = 0; end < count && end - first < most_at_once && triangles < most_triangles; ++end)
                 triangles += source_.solids[end].mesh.triangles.size();
-            const auto is_mesh = [&](uint32_t i) { return !source_.solids[i].platonic && !by_planes_[i]; };
+            const auto is_mesh = [&](uint32_t i) { return !source_.solids[i].polyhedron && !by_planes_[i]; };
             prepared.resize(end - first);
             tbb::parallel_invoke(
                 [&] {
                     for (uint32_t i = first; i < end; ++i)
-                        if (!source_.solids[i].platonic && !source_.solids[i].sphere) hash_mesh(i);
+                        if (!source_.solids[i].polyhedron && !source_.solids[i].sphere) hash_mesh(i);
                 },
                 [&] {
                     tbb::parallel_for(first, end, [&](uint32_t i) {

@@ -54,8 +54,8 @@ std::vector<glm::dvec3> world_vertices(const SolidObject& solid) {
 Box world_box(const SceneSource& source) {
     Box box;
     for (const SourceSolid& solid : source.solids) {
-        if (solid.platonic) {
-            add_solid(box, *solid.platonic);
+        if (solid.polyhedron) {
+            add_solid(box, *solid.polyhedron);
         } else if (solid.sphere) {
             add_sphere(box, solid.sphere->center, solid.sphere->radius);
         } else {
@@ -85,7 +85,7 @@ SceneNormalization find_normalization(const SceneSource& source) {
     if (!is_finite(largest) || (largest > 0 && (largest < 0x1p-900 || largest > 0x1p900)))
         throw scene_error(description, "", "the scene's size is outside what doubles can hold (2^-900 to 2^900)");
     for (const SourceSolid& solid : source.solids)
-        if (solid.platonic && solid.platonic->radius < 0x1p-50 * largest)
+        if (solid.polyhedron && solid.polyhedron->radius * polyhedron_of(*solid.polyhedron).reach < 0x1p-50 * largest)
             throw scene_error(description, solid.place,
                               "so small beside the scene that double precision makes a point of it",
                               "give it a larger radius, or bring what is far away nearer");

@@ -58,7 +58,7 @@ void check_light(const SceneDescription& scene, const Light& light, const KeyTab
     check.refuse(falloff_fault(light.falloff, light.radius));
 }
 
-void check_platonic(const SceneDescription& scene, const SolidObject& solid, const std::string& place) {
+void check_polyhedron(const SceneDescription& scene, const SolidObject& solid, const std::string& place) {
     solid_fields(solid, FieldCheck(scene, place, solid_keys));
     const EdgeLights& lights = solid.edge_lights;
     if (lights.count < 0) throw scene_error(scene, place, "the number of lights on an edge must not be negative");
@@ -171,12 +171,12 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
         solid.name = object.name;
         solid.place = object.place;
         solid.material = static_cast<uint32_t>(object.material);
-        if (const auto* platonic = std::get_if<SolidObject>(&object.shape)) {
-            check_platonic(description, *platonic, object.place);
-            solid.platonic = platonic;
-            if (const std::string& warning = polyhedron_of(*platonic).warning; !warning.empty())
+        if (const auto* polyhedron = std::get_if<SolidObject>(&object.shape)) {
+            check_polyhedron(description, *polyhedron, object.place);
+            solid.polyhedron = polyhedron;
+            if (const std::string& warning = polyhedron_of(*polyhedron).warning; !warning.empty())
                 source.warnings.push_back(scene_error(description, object.place, warning).what());
-            lights += polyhedron_of(*platonic).edges.size() * static_cast<size_t>(platonic->edge_lights.count);
+            lights += polyhedron_of(*polyhedron).edges.size() * static_cast<size_t>(polyhedron->edge_lights.count);
             if (lights > most_lights)
                 throw scene_error(
                     description, object.place,
@@ -204,9 +204,9 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
         const MaterialDescription& material = source.materials[solid.material];
         if (material.texture < 0 || solid.sphere) continue;
         const std::string what = "the material " + material.name + " has a texture, but ";
-        if (solid.platonic)
+        if (solid.polyhedron)
             throw scene_error(description, solid.place,
-                              what + "a " + polyhedron_of(*solid.platonic).name + " has no texture coordinates",
+                              what + "a " + polyhedron_of(*solid.polyhedron).name + " has no texture coordinates",
                               "give it a material without a texture");
         if (solid.mesh.uvs.empty())
             throw scene_error(description, solid.place, what + "the triangles have no texture coordinates",

@@ -17,8 +17,8 @@ namespace cistula {
 /// The source of one compiled Solid.
 struct SourceSolid {
     std::string name, place;
-    uint32_t material = 0;                  // index into SceneSource::materials
-    const SolidObject* platonic = nullptr;  // null: the solid is `sphere` or, without one, `mesh`
+    uint32_t material = 0;                    // index into SceneSource::materials
+    const SolidObject* polyhedron = nullptr;  // null: the solid is `sphere` or, without one, `mesh`
     const SphereObject* sphere = nullptr;
     /// The triangles that are rendered, in file order; those of a closed mesh counter-clockwise seen from outside.
     MeshSource mesh;

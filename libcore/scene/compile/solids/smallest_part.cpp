@@ -49,12 +49,12 @@ class SmallestPartSearch {
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
             const SourceSolid& solid = source_.solids[i];
             if (solid.sphere) continue;
-            if (!solid.platonic) {
+            if (!solid.polyhedron) {
                 add_mesh(i);
                 continue;
             }
-            const double radius = solid.platonic->radius * normalization_.factor;
-            add(polyhedron_of(*solid.platonic).inradius * radius, [&] { return name(solid) + ": its inradius"; });
+            const double radius = solid.polyhedron->radius * normalization_.factor;
+            add(polyhedron_of(*solid.polyhedron).inradius * radius, [&] { return name(solid) + ": its inradius"; });
         }
         for (const PlacedBall& ball : bodies_.balls)
             add(ball.radius, [&] { return name(source_.solids[ball.solid]) + ": its radius"; });
@@ -106,7 +106,7 @@ class SmallestPartSearch {
             }
             for (const PlacedBall& ball : bodies_.balls) add_distance(ball.distance(light.position), ball.solid, light);
             for (uint32_t i = 0; i < source_.solids.size(); ++i) {
-                if (source_.solids[i].platonic || source_.solids[i].sphere || has_planes(i) ||
+                if (source_.solids[i].polyhedron || source_.solids[i].sphere || has_planes(i) ||
                     apart(at, bodies_.sizes[i].box, range_))
                     continue;
                 add_distance(distance_to_triangles(source_.solids[i].mesh, normalization_, light.position,
