@@ -273,7 +273,7 @@ class Compiler {
             tbb::parallel_invoke(
                 [&] {
                     for (uint32_t i = first; i < end; ++i)
-                        if (!source_.solids[i].polyhedron && !source_.solids[i].sphere) hash_mesh(i);
+                        if (source_.solids[i].is_mesh()) hash_mesh(i);
                 },
                 [&] {
                     tbb::parallel_for(first, end, [&](uint32_t i) {

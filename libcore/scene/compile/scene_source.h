@@ -27,6 +27,9 @@ struct SourceSolid {
     double thickness = 0;         // of a closed mesh, in scene units: the least volume / area of its bodies
     uint32_t body = 0;            // of several solids that one mesh makes, from 0; they share its name
     bool keep_triangles = false;  // the mesh is not given by planes, even where it could be
+
+    /// Whether it is given by triangles, of which planes may be made.
+    bool is_mesh() const { return !polyhedron && !sphere; }
 };
 
 /// The solid's name, or one after its place in the file, "object3", if the file gives none.

@@ -45,7 +45,7 @@ PlacedBodies::PlacedBodies(const SceneSource& source) : normalization(find_norma
         const SourceSolid& solid = source.solids[i];
         if (solid.polyhedron)
             by_planes[i] = convex_solid(*solid.polyhedron, i, normalization);
-        else if (!solid.sphere)
+        else if (solid.is_mesh())
             sizes[i] = mesh_size(solid.mesh, normalization, least_share(Precision::double_) * normalization.extent);
     });
     for (uint32_t i = 0; i < count; ++i)

@@ -106,9 +106,7 @@ class SmallestPartSearch {
             }
             for (const PlacedBall& ball : bodies_.balls) add_distance(ball.distance(light.position), ball.solid, light);
             for (uint32_t i = 0; i < source_.solids.size(); ++i) {
-                if (source_.solids[i].polyhedron || source_.solids[i].sphere || has_planes(i) ||
-                    apart(at, bodies_.sizes[i].box, range_))
-                    continue;
+                if (!source_.solids[i].is_mesh() || has_planes(i) || apart(at, bodies_.sizes[i].box, range_)) continue;
                 add_distance(distance_to_triangles(source_.solids[i].mesh, normalization_, light.position,
                                                    tolerance(i, light), range_),
                              i, light);
