@@ -35,14 +35,17 @@ void check(const SceneDescription& scene, const SceneSource& source) {
         if (m.absorption != dvec3(0)) refuse("material " + m.name + " absorbs; its absorption must be 0");
         if (m.tint != dvec3(1)) refuse("material " + m.name + " tints what passes; its tint must be white");
         if (!is_gray(m.specular_color)) refuse("material " + m.name + " has a colored highlight; it must be gray");
-        if (m.texture >= 0 && !scene.textures[size_t(m.texture)].file.empty())
-            refuse("material " + m.name + " has a texture from a file; it must be a checker");
+        if (m.texture < 0) continue;
+        const TextureDescription& texture = scene.textures[size_t(m.texture)];
+        if (!texture.file.empty() || texture.wrap != std::array<TextureWrap, 2>{})
+            refuse("material " + m.name +
+                   " has a texture from a file, or one that does not repeat; it must be a checker");
     }
     if (!is_gray(scene.ambient)) refuse("the ambient color must be gray");
     for (const LightDescription& light : scene.lights)
         if (light.falloff || light.radius > 0) refuse("a light falls off or is seen; it must do neither");
     for (const SourceSolid& solid : source.solids)
-        if (solid.platonic && solid.platonic->edge_lights.count > 0) refuse("a solid has lights on its edges");
+        if (solid.polyhedron && solid.polyhedron->edge_lights.count > 0) refuse("a solid has lights on its edges");
 }
 
 /// Two cells a unit of uv times repeat, placed by the first triangle's uvs (a planar object has one such map).
@@ -88,7 +91,7 @@ std::string texture(const SceneDescription& scene, const MaterialDescription& m,
 MeshSource triangles_of(const SolidObject& solid) {
     MeshSource mesh;
     mesh.owned_vertices = world_vertices(solid);
-    mesh.owned_triangles = triangulated(platonic_shape(solid.solid));
+    mesh.owned_triangles = triangulated(polyhedron_of(solid));
     mesh.view_owned();
     return mesh;
 }
@@ -113,8 +116,8 @@ std::string povray_scene(const SceneDescription& scene, const CameraFrame& frame
         if (light.color != dvec3(0))
             text += fmt::format("light_source {{ {} {} }}\n", vector(light.position), color(light.color));
     for (const SourceSolid& solid : source.solids) {
-        const MeshSource made = solid.platonic ? triangles_of(*solid.platonic) : MeshSource();
-        const MeshSource& mesh = solid.platonic ? made : solid.mesh;
+        const MeshSource made = solid.polyhedron ? triangles_of(*solid.polyhedron) : MeshSource();
+        const MeshSource& mesh = solid.polyhedron ? made : solid.mesh;
         text += "mesh {\n";
         for (const auto& t : mesh.triangles)
             text += fmt::format("  triangle {{ {}, {}, {} }}\n", vector(mesh.vertices[t[0]]),

@@ -25,7 +25,7 @@ inline void check(const SceneDescription& scene, const SceneSource& source) {
     for (const LightDescription& light : scene.lights)
         if (light.falloff || light.radius > 0) refuse("a light falls off or is seen; it must do neither");
     for (const SourceSolid& solid : source.solids)
-        if (solid.platonic && solid.platonic->edge_lights.count > 0) refuse("a solid has lights on its edges");
+        if (solid.polyhedron && solid.polyhedron->edge_lights.count > 0) refuse("a solid has lights on its edges");
 }
 
 inline Material material_of(const SceneDescription& scene, const MaterialDescription& m, OwnedScene& owned) {
@@ -78,12 +78,12 @@ inline OwnedScene make_scene(const SceneDescription& scene) {
     for (const MaterialDescription& m : source.materials) owned.materials.push_back(material_of(scene, m, owned));
     for (const SourceSolid& solid : source.solids) {
         MeshSource made;
-        if (solid.platonic) {
-            made.owned_vertices = world_vertices(*solid.platonic);
-            made.owned_triangles = triangulated(platonic_shape(solid.platonic->solid));
+        if (solid.polyhedron) {
+            made.owned_vertices = world_vertices(*solid.polyhedron);
+            made.owned_triangles = triangulated(polyhedron_of(*solid.polyhedron));
             made.view_owned();
         }
-        append_triangles(scene, solid.platonic ? made : solid.mesh, static_cast<int>(solid.material),
+        append_triangles(scene, solid.polyhedron ? made : solid.mesh, static_cast<int>(solid.material),
                          source.materials[solid.material], owned);
     }
     for (const LightDescription& light : scene.lights)

@@ -21,5 +21,5 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # What find_package(cistula) finds, too.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
-    "cmake, g++, libdeflate-dev, libembree-dev, libfmt-dev, libglm-dev, libopenexr-dev, libpng-dev, libtbb-dev")
+    "cmake, g++, libdeflate-dev, libembree-dev, libfmt-dev, libglm-dev, libopenexr-dev, libpng-dev, libqhull-dev, libtbb-dev")
 include(CPack)

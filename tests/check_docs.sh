@@ -56,6 +56,7 @@ named_paths() {
         page && /^```/ { code = !code }
         {
             text = $0
+            gsub(/\.html/, "", text)
             if (page) { if (code) next; gsub(/\]\([^)]*\)/, "]", text) }
             else if (script) { if (text !~ /^[ \t]*#[ \t]/) next }
             else if (!sub(/^([^"]|"[^"]*")*\/\//, " ", text)) next

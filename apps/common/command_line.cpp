@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "apps/common/interrupt.h"
 #include "base/atomic_file.h"
 #include "base/file_bytes.h"
 #include "base/stages.h"
@@ -26,9 +27,9 @@ constexpr std::pair<std::string_view, std::string_view> other_names[] = {
     {"resolution", "--res"}, {"quiet", "-q,--quiet"},   {"verbose", "-v,--verbose"}};
 
 /// Settings that messages of the library name and that are no keys of a request.
-constexpr std::string_view other_settings[] = {"failflip", "failssim",     "jobs",          "run_commands",
-                                               "fail",     "hardfail",     "mask",          "filter",
-                                               "update",   "list_devices", "print_template"};
+constexpr std::string_view other_settings[] = {"failflip", "failssim",     "jobs",           "run_commands",
+                                               "fail",     "hardfail",     "mask",           "filter",
+                                               "update",   "list_devices", "print_template", "explore_mb"};
 
 std::vector<std::string> long_names(const CLI::App& app) {
     std::vector<std::string> names;
@@ -161,6 +162,9 @@ int run_program(const char* name, const std::string& memory_advice, const std::f
     std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit then is a write error
     // So is a pipe that nobody reads. A handler, unlike SIG_IGN, leaves it to InterruptGuard to catch what others send.
     if (std::signal(SIGPIPE, SIG_IGN) == SIG_DFL) std::signal(SIGPIPE, [](int) {});
+    // Asks render for a snapshot, and ends nothing before render can make one, nor any other program.
+    if (std::signal(SIGUSR1, SIG_IGN) == SIG_DFL) std::signal(SIGUSR1, [](int) {});
+    const InterruptGuard guard(name);
     try {
         return work();
     } catch (const std::exception& error) {

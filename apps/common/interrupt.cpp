@@ -1,11 +1,14 @@
 #include "apps/common/interrupt.h"
 
 #include <unistd.h>
+
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <iterator>
 
 #include "apps/common/command_line.h"
+#include "base/atomic_file.h"
 #include "sequence/snapshots.h"
 
 namespace cistula {
@@ -18,26 +21,25 @@ static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free && std::atomi
 constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 constexpr size_t signal_count = std::size(signals);
 struct sigaction previous[signal_count];
-
-void restore() {
-    for (size_t i = 0; i < signal_count; ++i) sigaction(signals[i], &previous[i], nullptr);
-}
+char program_name[64];
 
 void on_signal(int number, siginfo_t* info, void*) {
     if (number == SIGPIPE && info->si_pid == getpid()) return;  // by a write of this process, which fails
-    std::atomic<bool>* stop = watched;
+    std::atomic<bool>* const stop = watched;
+    if (stop != nullptr && !stop->exchange(true)) return;
+    remove_temporaries();
     if (stop == nullptr) {
-        static constexpr char message[] = "render: interrupted; nothing was written\n";
+        static constexpr char message[] = ": interrupted\n";
+        (void)!write(STDERR_FILENO, program_name, strlen(program_name));
         (void)!write(STDERR_FILENO, message, sizeof message - 1);
-        _exit(static_cast<int>(ExitCode::interrupted));
     }
-    *stop = true;
-    restore();  // a second signal then ends the process
+    _exit(static_cast<int>(ExitCode::interrupted));
 }
 
 }  // namespace
 
-InterruptGuard::InterruptGuard() {
+InterruptGuard::InterruptGuard(const char* program) {
+    strncpy(program_name, program, sizeof program_name - 1);
     struct sigaction action = {};
     action.sa_sigaction = on_signal;
     action.sa_flags = SA_RESTART | SA_SIGINFO;
@@ -50,12 +52,15 @@ InterruptGuard::InterruptGuard() {
 }
 
 InterruptGuard::~InterruptGuard() {
-    restore();
-    watched = nullptr;
+    for (size_t i = 0; i < signal_count; ++i) sigaction(signals[i], &previous[i], nullptr);
 }
 
-void InterruptGuard::watch(std::atomic<bool>& stop) {
+StopOnInterrupt::StopOnInterrupt(std::atomic<bool>& stop) {
     watched = &stop;
+}
+
+StopOnInterrupt::~StopOnInterrupt() {
+    watched = nullptr;
 }
 
 namespace {

@@ -5,19 +5,26 @@
 
 namespace cistula {
 
-/// While an object of this class exists, the first SIGINT, SIGTERM, SIGHUP, or SIGPIPE that another process sends, is
-/// caught and the second ends the process, unless that is SIGPIPE where run_program() has it be a write error.
-/// Before watch() the first one also ends it, with exit code 130 and a line that says that nothing was written. Only
-/// one object at a time.
+/// While an object of this class exists, SIGINT, SIGTERM, SIGHUP, and SIGPIPE that another process sends, end the
+/// process at once, with exit code 130, a line, and without the temporaries of files (AtomicFile). Only one object at a
+/// time: run_program() has it.
 class InterruptGuard {
   public:
-    InterruptGuard();
+    /// `program`: its name, for the line.
+    explicit InterruptGuard(const char* program);
     ~InterruptGuard();
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;
+};
 
-    /// Lets interruptions set `stop` from now on; it must outlive the guard.
-    void watch(std::atomic<bool>& stop);
+/// While an object of this class exists, the first of these signals sets a flag instead; the second ends the process,
+/// without a line. Only one object at a time.
+class StopOnInterrupt {
+  public:
+    explicit StopOnInterrupt(std::atomic<bool>& stop);
+    ~StopOnInterrupt();
+    StopOnInterrupt(const StopOnInterrupt&) = delete;
+    StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
 };
 
 class SnapshotRequests;

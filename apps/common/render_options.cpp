@@ -35,23 +35,23 @@ ChosenPixel parse_pixel(std::string_view text) {
     fail_usage(fmt::format("{} {}: {} has no place here: {}; leave it out", option, text, other, why));
 }
 
-/// Refuses keys beside --pixel.
-void check_pixel(const std::string& pixel, const RenderCommand& command) {
+/// Refuses keys beside --pixel or --explore.
+void check_pixel(const char* option, const std::string& text, const RenderCommand& command) {
     const std::pair<const char*, std::vector<const char*>> senseless[] = {
         {"no image is written",
          {"output", "preview", "layers", "bits", "strict", "background", "colorspace", "compression", "resume"}},
         {"nothing is timed", {"stats"}},
-        {"the pixel counts from the top left of the full frame", {"crop", "tile"}},
-        {"one pixel takes no time", {"progress"}},
+        {"pixels count from the top left of the full frame", {"crop", "tile"}},
+        {"there are no frames to tell of", {"progress"}},
         {"it shows the samples of a grid; --supersample chooses one", {"target_error"}},
         {"the CPU follows the rays, and every backend gives the same bits", {"backend"}},
     };
     for (const auto& [why, keys] : senseless)
         for (const char* key : keys)
-            if (request_key(key).given(command)) refuse("--pixel", pixel, option_name(key), why);
+            if (request_key(key).given(command)) refuse(option, text, option_name(key), why);
     if (command.frames.size() > 1)
-        fail_usage(fmt::format("--frames names {} frames, and --pixel {} is of one; name that one",
-                               command.frames.size(), pixel));
+        fail_usage(fmt::format("--frames names {} frames, and {} {} is of one; name that one", command.frames.size(),
+                               option, text));
 }
 
 }  // namespace
@@ -94,6 +94,15 @@ void declare_render_options(CLI::App& app, RenderCommand& command) {
     add_option(app, "--json", "FILE", "with --pixel: the same as JSON; - is standard output",
                [&command](const std::string& text) { command.json = text; })
         ->needs(pixel);
+    CLI::Option* const explore = add_option(app, "--explore", "FILE", "write a page that explains pixels; no image",
+                                            [&command](const std::string& text) {
+                                                command.page = text;
+                                                command.action = Action::explore;
+                                            });
+    add_option(app, "--explore-mb", "N", "with --explore: megabytes of it, which the grid of its pixels fills (5)",
+               read_number(command.page_mb, 0.01, 1000, "a number from 0.01 to 1000"))
+        ->needs(explore);
+    explore->excludes(pixel);
     add_action("--list-devices", "print the GPUs, or why there is none, and exit", Action::list_devices);
     add_action("--print-template", "print the seed's text input and exit", Action::print_template);
     add_action("--version", "print the version and exit", Action::print_version);
@@ -103,9 +112,11 @@ void declare_render_options(CLI::App& app, RenderCommand& command) {
 /// Checks how the options that were given fit together. Throws Error (usage).
 void check_render_options(const CLI::App& app, const RenderCommand& command) {
     const std::string pixel = given_text(app, "--pixel");
-    if (!pixel.empty()) check_pixel(pixel, command);
+    if (!pixel.empty()) check_pixel("--pixel", pixel, command);
+    if (!command.page.empty()) check_pixel("--explore", command.page, command);
     if (app.count("--explain") > 0) {
         if (!pixel.empty()) refuse("--pixel", pixel, "--explain", "each prints a report of its own");
+        if (!command.page.empty()) refuse("--explore", command.page, "--explain", "it prints a report of its own");
         if (command.tile) refuse("--tile", given_text(app, "--tile"), "--explain", "it tells of whole frames");
         if (is_for_programs(command.progress))
             refuse("--progress", given_text(app, "--progress"), "--explain", "it tells of frames that are written");
@@ -158,6 +169,7 @@ Examples:
   render scenes/benchmark.json -o b.exr --target-error 0.004       as many samples and bounces as that takes
   render scenes/seed.json -o out/beauty.####.exr --backend cuda --device all
   render scenes/glass.json --pixel 640,300 --supersample 1 | less  why this pixel is what it is
+  render scenes/glass.json --explore glass.html                    a page in which a click on a pixel shows that
   render - < scenes/input.txt                                      the seed's input and frames
   render --print-template > input.txt
 

@@ -25,13 +25,15 @@ struct ChosenPixel {
     int y = 0;
 };
 
-enum class Action { render, explain, measure, pixel, print_help, print_version, print_template, list_devices };
+enum class Action { render, explain, measure, pixel, explore, print_help, print_version, print_template, list_devices };
 
 /// A request and what is to be done with it.
 struct RenderCommand : RenderRequest {
     Action action = Action::render;
     ChosenPixel pixel;  // for Action::pixel
     std::string json;   // for Action::pixel: a file, "-" or empty
+    std::string page;   // for Action::explore: a file or "-"
+    double page_mb = 5;
 };
 
 /// Adds the option of a key, with another description if one is given; `request` must outlive it.

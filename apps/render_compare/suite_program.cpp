@@ -70,8 +70,7 @@ int run_suite(int argc, const char* const* argv) {
     say(table_head(suite, backends, name_width));
     SuiteUpdate update(suite);
     RenderProgress progress;
-    InterruptGuard guard;
-    guard.watch(progress.stop);
+    const StopOnInterrupt watch(progress.stop);
     SuiteWork work;
     work.judged = [&](const SuiteFrame& frame, const LayeredPicture* golden, SuiteResult& result) {
         if (!options.html.empty() && result.failed())

@@ -9,6 +9,7 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/programs.h"
 #include "apps/common/step_progress.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -28,12 +29,8 @@ struct VerifyOptions {
 
 void declare(CLI::App& app, VerifyOptions& options) {
     Options& settings = options.settings;
-    using Kinds = std::vector<IntersectorKind>;
-    Kinds all = host_intersectors;
-    all.push_back(IntersectorKind::cuda);
     add_option(app, "--backend", "NAME", "embree (the CPU: embree, lanes, bvh, brute), cuda (a GPU) or all; embree",
-               read_choice(settings.intersectors,
-                           {{"embree", host_intersectors}, {"cuda", Kinds{IntersectorKind::cuda}}, {"all", all}}));
+               read_by(settings.intersectors, intersectors_of));
     add_option(app, "--precision", "NAME", "float, double or both; both",
                read_choice(
                    settings.precisions,
@@ -80,8 +77,7 @@ int run(const VerifyOptions& options, const std::vector<CaseName>& cases) {
     const size_t width = widest(cases);
     const std::vector<Row> rows = [&] {
         StepProgress progress(ProgressStyle::automatic);
-        InterruptGuard guard;
-        guard.watch(progress.render.stop);
+        const StopOnInterrupt watch(progress.render.stop);
         print(table_head(width));
         progress.begin("cases", static_cast<double>(cases.size() * settings.precisions.size()));
         Options with_events = settings;
@@ -140,3 +136,8 @@ Exit codes: 0 all cases hold, 1 some do not, 2 command line, 3 file, 4 device.)"
 }
 
 }  // namespace cistula::verify
+
+int cistula::render_verify_program(int argc, const char* const* argv) {
+    return run_program("render-verify", "--quick and fewer cases need less",
+                       [&] { return verify::verify_program(argc, argv); });
+}

@@ -236,6 +236,7 @@ class FrameTask {
         std::mutex totals;
         const ShownTiles shown(progress_.tiles, film_, tile);
         tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
+            if (stopped()) return;
             const DefaultRounding rounding;
             Tile own(tile);
             for (int64_t t = range.begin(); t != range.end(); ++t) {

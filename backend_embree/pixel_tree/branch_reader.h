@@ -284,6 +284,7 @@ class BranchReader {
         const Solid& solid = scene_.solids[key_solid(key)];
         face.solid = key_solid(key);
         face.triangle = solid.kind != SolidKind::convex;
+        face.round = is_ball(solid);
         face.face = key_face(key) - (face.triangle ? solid.first_triangle : 0);
         face.crossing = key_kind(key);
         face.distance = length_of(replay, t);

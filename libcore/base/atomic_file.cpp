@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <filesystem>
 #include <string>
@@ -53,6 +55,14 @@ bool lock(int temporary) {
     if (flock(temporary, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;
     struct stat status;
     return fstat(temporary, &status) == 0 && status.st_nlink > 0;
+}
+
+/// The files that are being written, as far as there is room for them.
+std::array<std::atomic<const AtomicFile*>, 256> open_files;
+
+void replace_open(const AtomicFile* which, const AtomicFile* by) noexcept {
+    for (std::atomic<const AtomicFile*>& file : open_files)
+        if (const AtomicFile* expected = which; file.compare_exchange_strong(expected, by)) return;
 }
 
 bool is_same(const struct stat& a, const struct stat& b) {
@@ -126,6 +136,7 @@ void AtomicFile::create_temporary() {
         failure = EEXIST;
     }
     if (failure != 0) throw file_error(path_, "write", failure);
+    replace_open(nullptr, this);
     if (permissions_ >= 0) (void)!fchmod(descriptor_, static_cast<mode_t>(permissions_));
 }
 
@@ -144,6 +155,7 @@ void AtomicFile::close_temporary(bool remove) noexcept {
 }
 
 AtomicFile::~AtomicFile() {
+    replace_open(this, nullptr);
     close_temporary(!temporary_.empty());
 }
 
@@ -173,6 +185,12 @@ void AtomicFile::commit() {
     descriptor_ = -1;
     if (closed != 0) throw file_error(path_, "write", errno);
     flush_directory(directory_.number);
+}
+
+void remove_temporaries() noexcept {
+    for (const std::atomic<const AtomicFile*>& file : open_files)
+        if (const AtomicFile* const open = file; open && !open->temporary_.empty())
+            unlinkat(open->directory_.number, open->temporary_.c_str(), 0);
 }
 
 void write_file_atomically(const std::string& path, std::string_view bytes) {

@@ -46,6 +46,7 @@ class AtomicFile {
     };
 
     AtomicFile() = default;
+    friend void remove_temporaries() noexcept;
     void find_target();
     std::string prefix() const;
     void create_temporary();
@@ -59,6 +60,9 @@ class AtomicFile {
     std::string temporary_;  // empty once committed
     int descriptor_ = -1;
 };
+
+/// Removes the temporaries of all files that this process writes, which must end then. Safe in a handler of signals.
+void remove_temporaries() noexcept;
 
 /// Replaces the file by these bytes, or leaves it unchanged and throws Error (file).
 void write_file_atomically(const std::string& path, std::string_view bytes);

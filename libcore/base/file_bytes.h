@@ -1,4 +1,4 @@
-// Reading of whole files, and messages for the operating system's errors.
+// Reading of whole files, bytes as text, and messages for the operating system's errors.
 #pragma once
 
 #include <cstdint>
@@ -33,5 +33,8 @@ std::string read_file_start(const std::string& path, size_t count);
 
 /// The extension in lower case with its dot: ".exr" for "a/b.EXR"; empty if there is none.
 std::string lower_extension(const std::string& path);
+
+/// Bytes as the text of a data: address.
+std::string base64(const std::string& bytes);
 
 }  // namespace cistula

@@ -204,7 +204,7 @@ class PixelJson {
 }  // namespace
 
 std::string pixel_json(const PixelReport& report) {
-    return PixelJson(report).all().dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return PixelJson(report).all().dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace cistula

@@ -119,8 +119,10 @@ class TreeText {
         return "";
     }
 
-    /// A solid's face, or triangle for meshes, as a phrase: "gem (/objects/2), face 4".
+    /// A solid's face, or triangle for meshes, as a phrase: "gem (/objects/2), face 4"; of a sphere, the
+    /// solid alone.
     std::string face(const FaceMet& met) const {
+        if (met.round) return called(report_.names.solids[met.solid]);
         return fmt::format("{}, {} {}", called(report_.names.solids[met.solid]), met.triangle ? "triangle" : "face",
                            met.face);
     }

@@ -1,5 +1,8 @@
 #include "render/scene.h"
 
+#include <map>
+#include <mutex>
+
 namespace cistula {
 
 /// The frames of a scene that changes; the one that was compiled last is kept.

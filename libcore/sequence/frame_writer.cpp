@@ -138,8 +138,12 @@ void FrameWriter::work() {
         waiting_.pop();
         lock.unlock();
         std::exception_ptr failure;
+        bool is_whole = true;
         try {
             write(task);
+        } catch (const Error& error) {
+            is_whole = false;
+            if (error.kind() != ErrorKind::interrupted) failure = std::current_exception();
         } catch (...) {
             failure = std::current_exception();
         }
@@ -148,7 +152,7 @@ void FrameWriter::work() {
         bytes_ -= task.bytes;
         try {
             if (failure) std::rethrow_exception(failure);
-            done_.emplace(task.index, std::move(task.frame.stats));
+            if (is_whole) done_.emplace(task.index, std::move(task.frame.stats));
             if (bytes_ + (spares_.size() + 1) * task.bytes <= limits_.bytes) spares_.push_back(std::move(film));
         } catch (...) {
             if (!failure_) failure_ = std::current_exception();
@@ -193,7 +197,7 @@ void FrameWriter::write(Task& task) {
         if (frame.settings.adaptive()) add_target_attributes(stats.target, layers.attributes);
         stats.write_seconds += seconds_of([&] {
             for (const FrameFile& file : frame_files(std::move(layers), frame.split, frame.image, stats.frame))
-                write_exr(file.path, file.parts, limits_.exr_threads_of_a_frame);
+                write_exr(file.path, file.parts, limits_.exr_threads_of_a_frame, stop_);
         });
     }
     stats.clamped = clamped;

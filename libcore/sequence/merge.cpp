@@ -48,6 +48,16 @@ std::string difference(const Attributes& own, const Attributes& first, const std
     return "";
 }
 
+/// The attributes that the files of a frame's layers have in common (split_picture.h).
+Attributes common_attributes(const Attributes& attributes) {
+    Attributes common = without_target_attributes(attributes);
+    std::erase_if(common, [](const auto& entry) {
+        return entry.first == "colorInteropID" || entry.first == "chromaticities" || entry.first == "name" ||
+               entry.first.starts_with("cryptomatte/");
+    });
+    return common;
+}
+
 std::string channels_of(const LayeredPicture& picture) {
     std::string names;
     for (const LayeredPicture::Channel& channel : picture.channels)
@@ -87,8 +97,6 @@ void Merge::begin(const std::string& path, const std::vector<PicturePart>& tile)
         picture.y = window_->y;
         picture.width = window_->width;
         picture.height = window_->height;
-        for (LayeredPicture::Channel& channel : picture.channels)
-            channel.values.assign(static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height), 0);
     }
 }
 
@@ -126,7 +134,7 @@ void Merge::check(const std::string& path, const std::vector<PicturePart>& tile)
 }
 
 void Merge::add(const std::string& path) {
-    const std::vector<PicturePart> tile = read_exr_parts(path);
+    const std::vector<PicturePart> tile = read_exr_headers(path);
     for (const PicturePart& part : tile)
         if (part.picture.attributes.count(snapshot_attribute) != 0)
             fail(path, "is a snapshot of a frame in work, and no tile");
@@ -138,14 +146,57 @@ void Merge::add(const std::string& path) {
     for (const PicturePart& part : tile)
         if (rect_of(part.picture) != rect) fail(path, "its parts have different windows; render writes none such");
     check_window(path, rect);
-    for (size_t i = 0; i < tile.size(); ++i) {
-        place(tile[i].picture, parts_[i].picture);
-        if (!placed_.empty()) join_target_attributes(tile[i].picture.attributes, parts_[i].picture.attributes);
-    }
+    for (size_t i = 0; i < tile.size() && !placed_.empty(); ++i)
+        join_target_attributes(tile[i].picture.attributes, parts_[i].picture.attributes);
     placed_.push_back({path, rect});
 }
 
+void Merge::check_beside(const Merge& main) const {
+    const std::string& path = placed_.front().path;
+    const std::string differs =
+        difference(common_attributes(parts_.front().picture.attributes),
+                   common_attributes(main.parts_.front().picture.attributes), main.placed_.front().path);
+    if (!differs.empty()) fail(path, differs + ", or remove it");
+    for (const Placed& own : placed_)
+        if (std::none_of(main.placed_.begin(), main.placed_.end(),
+                         [&](const Placed& other) { return other.rect == own.rect; }))
+            fail(own.path, fmt::format("its pixels, {}, are those of no tile of the frame", format_rect(own.rect)));
+}
+
 std::vector<PicturePart> Merge::whole() && {
+    for (PicturePart& part : parts_)
+        for (LayeredPicture::Channel& channel : part.picture.channels)
+            channel.values.assign(static_cast<size_t>(part.picture.width) * static_cast<size_t>(part.picture.height),
+                                  0);
+    for (const Placed& placed : placed_) {
+        const std::vector<PicturePart> tile = read_exr_parts(placed.path);
+        check(placed.path, tile);  // it may be another file by now
+        for (size_t i = 0; i < tile.size(); ++i) {
+            if (rect_of(tile[i].picture) != placed.rect) fail(placed.path, "was replaced meanwhile; merge again");
+            place(tile[i].picture, parts_[i].picture);
+        }
+    }
+    return std::move(parts_);
+}
+
+bool is_layer_file(const std::string& path, const std::string& layer) {
+    try {
+        const std::vector<PicturePart> parts = read_exr_headers(path);
+        return std::all_of(parts.begin(), parts.end(), [&](const PicturePart& part) {
+            const auto& channels = part.picture.channels;
+            return std::all_of(channels.begin(), channels.end(), [&](const LayeredPicture::Channel& channel) {
+                const std::string& name = channel.name;
+                return name == "R" || name == "G" || name == "B" ||
+                       (name.starts_with(layer) &&
+                        name.find_first_not_of("0123456789", layer.size()) == name.rfind('.'));
+            });
+        });
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+void Merge::check_whole() const {
     std::vector<PixelRect> rects;
     for (const Placed& placed : placed_) rects.push_back(placed.rect);
     std::vector<PixelRect> gaps = uncovered(*window_, rects);
@@ -163,7 +214,6 @@ std::vector<PicturePart> Merge::whole() && {
                         fmt::join(texts, ", "), gaps.size() > most ? " and others" : ""),
             "`crop` names the pixels of a smaller whole");
     }
-    return std::move(parts_);
 }
 
 namespace {

@@ -351,6 +351,7 @@ void check_request(const RenderRequest& request) {
 SceneDescription read_scene(const RenderRequest& request) {
     SceneDescription scene = read_scene(request.scene);
     if (request.texture_gb > 0) scene.texture_bytes = static_cast<uint64_t>(request.texture_gb * 1e9);
+    if (request.described) request.described(scene);
     return scene;
 }
 

@@ -44,6 +44,7 @@ struct RenderRequest {
     bool quiet = false;
     bool verbose = false;
     ProgressStyle progress = ProgressStyle::automatic;
+    std::function<void(SceneDescription&)> described;  // called with the scene once it is read; null: nothing is
 };
 
 /// What is told of a key. Other keys stand in texts as `layers` (base/error.h).

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "base/error.h"
@@ -33,6 +34,7 @@ RunFiles::Place RunFiles::place_of(const std::string& path) {
 RunFiles::RunFiles() {
     add_stream(STDOUT_FILENO, "standard output");
     add_stream(STDERR_FILENO, "standard error");
+    if (const char* const config = std::getenv("OCIO")) reads(config, "the config that $OCIO names");
 }
 
 void RunFiles::add_stream(int descriptor, const std::string& what) {

@@ -15,7 +15,7 @@ namespace cistula {
 /// file that does not exist yet is told apart by its folder and its name.
 class RunFiles {
   public:
-    /// Begins with the files that standard output and standard error are redirected to.
+    /// Begins with the files that standard output and standard error are redirected to, and with the config of $OCIO.
     RunFiles();
 
     /// Adds a file that is read. `what` names it in messages: "the scene". "-": the file that standard input comes

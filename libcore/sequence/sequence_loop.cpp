@@ -48,14 +48,14 @@ std::vector<FrameFile> expected_files(const SequenceJob& job, const CameraFrame&
 /// Whether a file is complete, and of this frame.
 bool is_finished(const FrameFile& file) {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(file.path, error) || !exr_is_complete(file.path)) return false;
+    if (!std::filesystem::is_regular_file(file.path, error)) return false;
     try {
-        const std::vector<PicturePart> parts = read_exr_parts(file.path);
-        return std::equal(parts.begin(), parts.end(), file.parts.begin(), file.parts.end(),
-                          [&](const PicturePart& part, const PicturePart& expected) {
-                              return (parts.size() == 1 || part.name == expected.name) &&
-                                     is_same_image(part.picture, expected.picture);
-                          });
+        const std::vector<PicturePart> parts = read_exr_headers(file.path);
+        const auto is_same = [&](const PicturePart& part, const PicturePart& expected) {
+            return (parts.size() == 1 || part.name == expected.name) && is_same_image(part.picture, expected.picture);
+        };
+        return std::equal(parts.begin(), parts.end(), file.parts.begin(), file.parts.end(), is_same) &&
+               exr_is_complete(file.path);
     } catch (const Error&) {
         return false;  // not an EXR of this frame: rendered again
     }

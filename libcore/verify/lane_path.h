@@ -37,7 +37,7 @@ class LanePath {
     bool fits() const { return functions_ != nullptr; }
 
     Hit<Real> closest(const Ray<Real>& ray) const {
-        if (!InteriorSet::holds(ray.media, in_lanes_->scene().named)) return BvhIntersector<Real>{scene_}.closest(ray);
+        if (is_traced_alone(ray)) return BvhIntersector<Real>{scene_}.closest(ray);
         Hit<Real> hit =
             answer(recent_hits_.local(), numbered(ray), [&](const Ray<Real>* rays, int count, Hit<Real>* hits) {
                 functions_->closest(&in_lanes_->scene(), rays, count, hits);
@@ -48,8 +48,7 @@ class LanePath {
 
     template <class E>
     Throughput<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
-        if (!InteriorSet::holds(shadow.ray.media, in_lanes_->scene().named))
-            return BvhIntersector<Real>{scene_}.template transmittance<E>(shadow);
+        if (is_traced_alone(shadow.ray)) return BvhIntersector<Real>{scene_}.template transmittance<E>(shadow);
         auto& recent = recent_shares_.local();
         if (recent.count > 0 && recent.questions[0].light != shadow.light) recent = {};  // one light at a time
         const ShadowRay<Real> asked{numbered(shadow.ray), shadow.distance, shadow.light};
@@ -65,6 +64,10 @@ class LanePath {
 
   private:
     static constexpr int most = 16;
+
+    bool is_traced_alone(const Ray<Real>& ray) const {
+        return !InteriorSet::holds(ray.media, in_lanes_->scene().named) || BallSides::at_start(scene_, ray).bits != 0;
+    }
 
     /// The last questions and their answers, in the order of lanes.
     template <class Question, class Answer>

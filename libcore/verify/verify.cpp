@@ -246,6 +246,14 @@ std::string number_text(double value) {
                                                                  : fmt::format("{:.4g}", value);
 }
 
+std::vector<IntersectorKind> intersectors_of(const std::string& backend) {
+    using Kinds = std::vector<IntersectorKind>;
+    Kinds all = host_intersectors;
+    all.push_back(IntersectorKind::cuda);
+    return cistula::chosen<Kinds>(
+        backend, {{"embree", host_intersectors}, {"cuda", Kinds{IntersectorKind::cuda}}, {"all", all}});
+}
+
 std::vector<CaseName> chosen_cases(const Options& options) {
     std::vector<CaseName> names;
     for (const Case* one : chosen(options)) names.push_back({one->name, one->exact});

@@ -20,6 +20,8 @@ const char* intersector_name(IntersectorKind kind);
 /// The intersectors of the CPU.
 inline const std::vector<IntersectorKind> host_intersectors = {IntersectorKind::embree, IntersectorKind::lanes,
                                                                IntersectorKind::bvh, IntersectorKind::brute};
+/// Those of a backend: "embree", the CPU; "cuda", a GPU; "all". Throws Error (usage).
+std::vector<IntersectorKind> intersectors_of(const std::string& backend);
 
 /// What one case found on one intersector in one precision.
 struct Row {

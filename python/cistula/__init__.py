@@ -15,8 +15,8 @@ if _find_spec("._core", __name__):
 
     require_processor()
 
-    from ._core import ChannelDifference, Comparison, Hits, Image, backends, version as __version__
-    from .comparison import compare
+    from ._core import CaseResult, ChannelDifference, Comparison, Hits, Image, backends, version as __version__
+    from .comparison import compare, verify
     from .errors import ArgumentError, DeviceError, Error, FileError, FrameError, SceneError
     from .pixel import Light, Pixel, Ray, Surface
     from .scene import Scene, SceneBuilder, Settings
@@ -28,6 +28,6 @@ else:  # the folder of a checkout: `python3 -m cistula view` and `farm` need no 
 
     globals()["__getattr__"] = _missing
 
-__all__ = ["ArgumentError", "ChannelDifference", "Comparison", "DeviceError", "Error", "FileError", "FrameError", "Hits",
-           "Image", "Light", "Pixel", "Ray", "Scene", "SceneBuilder", "SceneError", "Settings", "Surface", "__version__",
-           "backends", "compare"]
+__all__ = ["ArgumentError", "CaseResult", "ChannelDifference", "Comparison", "DeviceError", "Error", "FileError", "FrameError",
+           "Hits", "Image", "Light", "Pixel", "Ray", "Scene", "SceneBuilder", "SceneError", "Settings", "Surface", "__version__",
+           "backends", "compare", "verify"]

@@ -1,15 +1,36 @@
-"""The commands of `cistula NAME ...`; each is a module of the package with main(arguments) -> exit code."""
+"""The commands of `cistula NAME ...`: programs of the native module, and modules of the package with main(arguments) -> exit
+code."""
 import importlib
+import os
+import signal
 import sys
 from collections.abc import Sequence
 
-from cistula.command import run
+from cistula.command import Refused, run
 
-COMMANDS = {
+PROGRAMS = {
+    "render": "a scene as EXR images",
+    "compare": "how two pictures differ, or those of a suite",
+    "verify": "hard cases against closed forms, on this machine",
+}
+COMMANDS = PROGRAMS | {
     "report": "what accuracy costs in time, measured and shown as a page",
     "view": "layers of EXR pictures as PNG, and contact sheets",
     "farm": "tasks of a film, for OpenJD, Slurm and make",
+    "import": "a scene of a mesh: PLY, OBJ or STL",
 }
+MODULES = {"import": "importer"}  # where its name is a word of Python
+
+
+def run_program(name: str, arguments: Sequence[str]) -> int:
+    """Runs a program, as it runs by itself: signals are for it."""
+    try:
+        from cistula import _core
+    except ImportError as error:
+        raise Refused(f"{error}; `make wheel` or `make test` builds the native module") from error
+    for number in (signal.SIGINT, signal.SIGPIPE):
+        signal.signal(number, signal.SIG_DFL)
+    return _core.run_program(name, [os.fsencode(word) for word in arguments])
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -26,7 +47,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if name not in COMMANDS:
         print(f"cistula: {name}: no such command; there are {', '.join(COMMANDS)}", file=sys.stderr)
         return 2
-    return run(name, lambda: int(importlib.import_module("." + name, "cistula").main(others)))
+    if name in PROGRAMS:
+        return run(name, lambda: run_program(name, others))
+    return run(name, lambda: int(importlib.import_module("." + MODULES.get(name, name), "cistula").main(others)))
 
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
-"""How two pictures differ."""
+"""How two pictures differ, and whether the renderer holds on this machine."""
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from . import _core
+from .scene import keywords
 
 
 def compare(a: str | os.PathLike[str] | _core.Image, b: str | os.PathLike[str] | _core.Image, *, fail: float | None = None,
@@ -18,3 +19,16 @@ def compare(a: str | os.PathLike[str] | _core.Image, b: str | os.PathLike[str] |
     first, second = (one if isinstance(one, _core.Image) else os.fspath(one) for one in (a, b))
     names = [] if layers is None else layers.split(",") if isinstance(layers, str) else list(layers)
     return _core.compare(first, second, fail, failpercent, hardfail, names)
+
+
+def verify(quick: bool = False, *, cases: Sequence[str] | str = (), backend: str = "embree", precision: str | None = None,
+           lanes: int | None = None, progress: Callable[[_core.CaseResult], object] | None = None) -> list[_core.CaseResult]:
+    """Runs hard cases against closed forms on this machine, as render-verify does: `all(cistula.verify(quick=True))`.
+
+    quick: fewer rays and smaller pictures, some two minutes; cases: names, their beginnings, or patterns with * and ?;
+    backend: "embree", the CPU's intersectors, "cuda" or "all"; precision: "float" or "double", both by default; lanes: the most
+    rays that are traced at once; progress: called with each result, and what it raises comes out here, as Ctrl-C does. Raises
+    ArgumentError, DeviceError.
+    """
+    names = [cases] if isinstance(cases, str) else list(cases)
+    return _core.verify(names, quick, backend, keywords({"precision": precision, "lanes": lanes}), progress)

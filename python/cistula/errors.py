@@ -41,7 +41,7 @@ class FrameError(Error, ArithmeticError):
 
 _KINDS: dict[str, type[Error]] = {"usage": ArgumentError, "scene": SceneError, "file": FileError, "device": DeviceError,
                                   "failed": FrameError, "target": FrameError}
-_PLACE = re.compile(r"(?P<source>.*?)(: (?P<pointer>/.*)|(:\d+){1,2})?$", re.DOTALL)
+_PLACE = re.compile(r"(?P<source>.*?)(: (?P<pointer>/.*?)(: .*)?|(:\d+){1,2})?$", re.DOTALL)
 
 
 def of_library(line: str, kind: str, subject: str, place: str, remedy: str) -> Error:

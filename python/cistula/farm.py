@@ -15,7 +15,7 @@ from . import farm_task
 from .command import Parser, Refused, number, shown, write_whole
 from .farm_task import folder_and_name, format_frames, parse_frames, tiles_of
 
-REFUSED = "--tile --stats --explain --pixel --json --resume --progress --list-devices --print-template".split()
+REFUSED = "--tile --stats --explain --explore --explore-mb --pixel --json --resume --progress --list-devices --print-template".split()
 
 TASK = Path(farm_task.__file__)
 

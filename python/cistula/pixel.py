@@ -4,6 +4,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from .errors import ArgumentError
+
 Vector = tuple[float, float, float]
 
 
@@ -107,7 +109,7 @@ class Pixel:
 
 def of_report(report: Any, x: int, y: int, sample: int | str) -> Pixel:
     if sample != "middle" and not (isinstance(sample, int) and 0 <= sample < report.samples):
-        raise IndexError(f"sample={sample!r}: must be \"middle\" or 0 to {report.samples - 1}")
+        raise ArgumentError(f"sample={sample!r}: must be \"middle\" or 0 to {report.samples - 1}")
     number = report.middle if sample == "middle" else sample
     rays = tuple(_ray(*values) for values in report.rays(number))
     return Pixel(x, y, report.radiance, report.error, report.samples, rays, report.flaws, report)

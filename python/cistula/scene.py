@@ -68,6 +68,13 @@ def keywords(settings: Mapping[str, object]) -> list[tuple[str, str]]:
     return [(name, _text(name, value)) for name, value in settings.items() if value is not None]
 
 
+def _whole(name: str, value: object) -> int:
+    try:
+        return operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise ArgumentError(f"{name}={value!r}: must be a whole number", argument=name) from None
+
+
 def _points(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
     array = np.asarray(values)
     if array.dtype.kind not in "fiu" or array.shape[-1:] != (3,) or array.ndim > 2:
@@ -188,7 +195,7 @@ class Scene:
         settings: see cistula.Settings. progress: called with the share that is done, 0 to 1, some 20 times a second; what it
         raises ends the render and comes out here, and so does Ctrl-C. Raises ArgumentError, DeviceError, FrameError.
         """
-        image = _core.Frames(self._core, [operator.index(frame)], keywords(settings)).next(progress)
+        image = _core.Frames(self._core, [_whole("frame", frame)], keywords(settings)).next(progress)
         assert image is not None
         return image
 
@@ -198,7 +205,8 @@ class Scene:
 
         As render() otherwise; a GPU begins the next ones early.
         """
-        run = _core.Frames(self._core, [operator.index(f) for f in (range(self.frames) if frames is None else frames)], keywords(settings))
+        numbers = [_whole("frames", number) for number in (range(self.frames) if frames is None else frames)]
+        run = _core.Frames(self._core, numbers, keywords(settings))
         return iter(lambda: run.next(progress), None)
 
     def pixel(self, x: int, y: int, *, sample: int | str = "middle", frame: int = 0, size: tuple[int, int] | str | None = None,
@@ -206,7 +214,8 @@ class Scene:
         """The ray trees of pixel (x, y), from the top left of the full frame; `rays` of the sample nearest to its center, or of
         the one of this number."""
         settings = {"size": size, "supersample": supersample, "depth": depth, "cutoff": cutoff}
-        return pixel.of_report(_core.PixelReport(self._core, x, y, frame, keywords(settings)), x, y, sample)
+        report = _core.PixelReport(self._core, _whole("x", x), _whole("y", y), _whole("frame", frame), keywords(settings))
+        return pixel.of_report(report, x, y, sample)
 
     def intersect(self, origins: npt.ArrayLike, directions: npt.ArrayLike, *, threads: int | None = None,
                   backend: str | None = None, devices: Sequence[int] | str | None = None) -> _core.Hits:
@@ -258,9 +267,11 @@ class SceneBuilder:
         if corners.size and not (0 <= corners.min() and corners.max() < len(points)):
             raise ArgumentError(f"triangles: must be 0 to {len(points) - 1}, the last of the vertices; "
                                 f"they are {corners.min()} to {corners.max()}")
-        places = None if uvs is None else np.ascontiguousarray(uvs, dtype=np.float64)
-        if places is not None and places.shape != (len(points), 2):
-            raise ArgumentError(f"uvs: must be {len(points)} x 2 numbers, one for each vertex, not of shape {places.shape}")
+        places = None if uvs is None else np.asarray(uvs)
+        if places is not None and (places.dtype.kind not in "fiu" or places.shape != (len(points), 2)):
+            raise ArgumentError(f"uvs: must be {len(points)} x 2 numbers, one for each vertex, not {places.dtype} of shape {places.shape}")
+        if places is not None:
+            places = np.ascontiguousarray(places, dtype=np.float64)
         objects = self._scene.setdefault("objects", [])
         self._meshes[len(objects)] = (points, np.ascontiguousarray(corners, dtype=np.uint32), places)
         objects.append({"name": name, "mesh": "array.ply", "material": material, **_plain(keys, f"/objects/{len(objects)}")})

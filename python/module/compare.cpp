@@ -1,6 +1,10 @@
 // How two pictures differ.
 #include "compare/metrics/compare.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <tuple>
 #include <variant>
 
 #include <nanobind/stl/variant.h>
@@ -37,6 +41,13 @@ std::string name_of_side(const Side& side) {
 Judged compare(const Side& a, const Side& b, std::optional<double> fail, double failpercent,
                std::optional<double> hardfail, std::vector<std::string> layers) {
     check_process();
+    for (const auto& [name, value, high] : {std::tuple{"fail", fail, double(INFINITY)},
+                                            {"hardfail", hardfail, double(INFINITY)},
+                                            {"failpercent", std::optional(failpercent), 100.0}})
+        if (value && !(*value >= 0 && *value <= high))
+            throw Error(ErrorKind::usage, fmt::format("`{}`={}: must be a number from 0 to {}", name, *value, high));
+    if (failpercent > 0 && !fail)
+        throw Error(ErrorKind::usage, fmt::format("`failpercent`={}: is for `fail`", failpercent));
     const nb::gil_scoped_release free;
     StoredReader reader;
     Selection selection;

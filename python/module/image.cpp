@@ -5,11 +5,14 @@
 
 #include <algorithm>
 
+#include "backend_embree/embree/embree_renderer.h"
 #include "base/atomic_file.h"
+#include "base/file_bytes.h"
 #include "base/suggest.h"
 #include "image/exr/exr.h"
 #include "image/picture/picture_io.h"
 #include "image/view/picture_view.h"
+#include "render/explorer/explorer.h"
 #include "render/record/film_picture.h"
 #include "render/record/target_report.h"
 #include "sequence/frame_writer.h"
@@ -67,7 +70,15 @@ nb::object target_of(const Image& image) {
     return told;
 }
 
-void save(Image& image, const std::string& path) {
+/// The name of a file to be written. Throws Error (usage) for another suffix.
+std::string named(const std::filesystem::path& path, const char* suffix) {
+    if (lower_extension(path.string()) != suffix)
+        throw Error(ErrorKind::usage, fmt::format("`path`={}: must be named *{}", path.string(), suffix));
+    return path.string();
+}
+
+void save(Image& image, const std::filesystem::path& given) {
+    const std::string path = named(given, ".exr");
     {
         const nb::gil_scoped_release free;
         image.clamped = 0;
@@ -89,6 +100,38 @@ std::string png_of(const Image& image, const Keywords& view) {
         viewed(to_color(image.film, transparent), request.view, static_cast<uint32_t>(image.film.full_height)));
 }
 
+Explorer explorer_of(const Image& image, StopSignal stop) {
+    const SceneHandle& scene = *image.scene;
+    return {scene.scene().at(image.frame, stop), camera_at(scene.description().camera, image.frame), image.settings};
+}
+
+nb::object explore(Self self, const std::optional<std::filesystem::path>& path, double mb) {
+    const Image& image = image_of(self);
+    if (image.film.rect.width != image.film.full_width || image.film.rect.height != image.film.full_height)
+        throw Error(ErrorKind::usage, "the explorer shows whole frames, and this is a crop; render it without `crop`");
+    std::string text;
+    std::atomic<bool> stop{false};
+    run_interruptibly(stop, [&] {
+        const SceneDescription description = at_frame(image.scene->description(), image.frame);
+        const Explorer explorer = explorer_of(image, stop);
+        text = explorer.start(description.source, wireframes(gather_scene(description, stop)), image.film);
+        const Scene scene = image.scene->scene().at(image.frame, stop);
+        const auto make = [&] { return make_embree_renderer(scene); };
+        if (path) write_file_atomically(path->string(), explorer.page(text, mb, make, stop).html);
+    });
+    if (path) return nb::none();
+    return nb::module_::import_("cistula.explorer").attr("widget")(self, text);
+}
+
+std::string explorer_rays(const Image& image, int x, int y) {
+    std::string text;
+    std::atomic<bool> stop{false};
+    run_interruptibly(stop, [&] {
+        text = explorer_of(image, stop).pixel(*LentRenderer(image.scene, Backend::embree, {}), x, y, stop);
+    });
+    return text;
+}
+
 }  // namespace
 
 const std::vector<float>& Image::channel(const std::string& name) {
@@ -107,6 +150,8 @@ const std::vector<float>& Image::channel(const std::string& name) {
 }
 
 void bind_image(nb::module_& m) {
+    m.attr("explorer_script") = std::string(explorer_script);
+    m.attr("explorer_style") = std::string(explorer_style);
     nb::class_<Image>(
         m, "Image", nb::is_weak_referenceable(),
         "A finished frame: channels by name as arrays (`image[\"R\"]`), its sums, its header.\n\n"
@@ -219,18 +264,28 @@ void bind_image(nb::module_& m) {
             },
             nb::sig("def header(self) -> dict[str, str | int | float | list[float] | tuple[int, int]]"),
             "What the header of its EXR says: the scene's hash, camera, depth and so on.")
-        .def("save", save, "path"_a, "Writes the EXR that render writes, byte for byte; whole or not at all.")
+        .def("save", save, "path"_a, nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
+             "Writes the EXR that render writes, byte for byte; whole or not at all.")
         .def(
             "preview",
-            [](const Image& image, const std::string& path, double exposure, const std::string& view, double bloom) {
+            [](const Image& image, const std::filesystem::path& path, double exposure, const std::string& view,
+               double bloom) {
                 const nb::gil_scoped_release free;
-                write_file_atomically(path, png_of(image, {{"exposure", fmt::format("{}", exposure)},
-                                                           {"view", view},
-                                                           {"bloom", fmt::format("{}", bloom)}}));
+                write_file_atomically(named(path, ".png"), png_of(image, {{"exposure", fmt::format("{}", exposure)},
+                                                                          {"view", view},
+                                                                          {"bloom", fmt::format("{}", bloom)}}));
             },
             "path"_a, "exposure"_a = 0.0, "view"_a = "srgb", "bloom"_a = 0.0,
+            nb::sig("def preview(self, path: str | os.PathLike[str], exposure: float = 0.0, view: str = 'srgb', bloom: "
+                    "float = 0.0) -> None"),
             "Writes the PNG that `render --preview` writes: 8 bits, sRGB; exposure in stops, view \"srgb\", \"filmic\" "
             "or one of $OCIO.")
+        .def("explore", explore, "path"_a.none() = nb::none(), nb::kw_only(), "mb"_a = 5.0,
+             nb::sig("def explore(self, path: str | os.PathLike[str] | None = None, *, mb: float = 5.0) -> typing.Any"),
+             "Writes the page that `render --explore` writes, of at most `mb` megabytes: a click on a pixel shows its "
+             "rays. "
+             "Without a path, in a notebook: a widget that does, which asks for any pixel.")
+        .def("_explorer_rays", explorer_rays, "x"_a, "y"_a, "A pixel's rays for the widget's script. Internal.")
         .def(
             "_repr_png_",
             [](const Image& image) {

@@ -10,12 +10,14 @@
 #include "module.h"
 #include "render/record/film.h"
 #include "render/renderer.h"
+#include "scene.h"
 #include "scene/description/camera_path.h"
 
 namespace cistula::python {
 
 /// A film with what its files say. Arrays look into it.
 struct Image {
+    std::shared_ptr<SceneHandle> scene;
     Film film;
     FrameSettings settings;
     int frame = 0;

@@ -19,7 +19,8 @@
 namespace cistula::python {
 namespace {
 
-constexpr std::pair<std::string_view, const char*> other_names[] = {{"resolution", "size"}, {"device", "devices"}};
+constexpr std::pair<std::string_view, const char*> other_names[] = {
+    {"resolution", "size"}, {"device", "devices"}, {"explore_mb", "mb"}};
 
 constexpr const char* kinds[] = {"usage", "scene", "file", "device", "failed", "target", "interrupted"};
 
@@ -132,6 +133,13 @@ void on_threads(int threads, const std::function<void()>& work) {
     tbb::task_arena(threads).execute(work);
 }
 
+/// std::condition_variable::wait, of which GCC 12's library has a version that those of manylinux_2_34 lack; the linker
+/// puts this in its place.
+extern "C" void __wrap__ZNSt18condition_variable4waitERSt11unique_lockISt5mutexE(std::condition_variable& changed,
+                                                                                 std::unique_lock<std::mutex>& lock) {
+    pthread_cond_wait(changed.native_handle(), lock.mutex()->native_handle());
+}
+
 NB_MODULE(_core, m) {
     nb::register_exception_translator(translate);
     m.doc() = "The native part of the package cistula.";
@@ -167,6 +175,7 @@ NB_MODULE(_core, m) {
     bind_pixel(m);
     bind_scene(m);
     bind_compare(m);
+    bind_programs(m);
 }
 
 }  // namespace cistula::python

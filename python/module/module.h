@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -64,5 +65,6 @@ void bind_scene(nb::module_& m);
 void bind_image(nb::module_& m);
 void bind_pixel(nb::module_& m);
 void bind_compare(nb::module_& m);
+void bind_programs(nb::module_& m);
 
 }  // namespace cistula::python

@@ -17,8 +17,9 @@
 #include "render/scene.h"
 #include "scene.h"
 #include "scene/compile/materials/required_effects.h"
-#include "scene/readers/meshes/polygon_mesh.h"
+#include "scene/readers/meshes/mesh_file.h"
 #include "scene/readers/read_scene.h"
+#include "scene/readers/scene_keys.h"
 #include "sequence/backends.h"
 
 namespace cistula::python {
@@ -76,6 +77,7 @@ class Frames {
         if (image.film.flags != 0)
             throw Error(ErrorKind::failed, fmt::format("{}: frame {} cannot be trusted: {}", description.source,
                                                        camera.frame, describe_flags(image.film.flags, description)));
+        image.scene = scene_;
         image.settings = settings_;
         image.frame = camera.frame;
         image.picture = channels_of(image.film, request_.channels, &image.clamped);
@@ -147,6 +149,55 @@ void ask_renderer(const std::shared_ptr<SceneHandle>& scene, const Keywords& key
         LentRenderer renderer(scene, request.backend, request.devices);
         ask(*renderer);
     });
+}
+
+/// Rows of numbers as an array that owns them.
+template <class T, ssize_t columns, class Row>
+View<T, -1, columns> owned_rows(std::vector<Row>&& rows) {
+    auto* const kept = new std::vector<Row>(std::move(rows));
+    const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<Row>*>(p); });
+    return View<T, -1, columns>(reinterpret_cast<const T*>(kept->data()), {kept->size(), size_t(columns)}, owner);
+}
+
+/// What a scene file would say of a material: its keys with values that are not the default.
+nb::dict keys_of(const MaterialDescription& material) {
+    nb::dict keys;
+    const MaterialDescription standard;
+    const auto add = [&keys](const char* key, const auto& value) {
+        if constexpr (std::is_same_v<decltype(value), const glm::dvec3&>)
+            keys[key] = value == glm::dvec3(value.x) ? nb::cast(value.x) : nb::object(triple(value));
+        else
+            keys[key] = value;
+    };
+    material_fields(standard, add);
+    const nb::dict defaults(nb::steal<nb::dict>(PyDict_Copy(keys.ptr())));
+    material_fields(material, add);
+    for (const auto& [key, value] : defaults)
+        if (keys[key].equal(value)) nb::del(keys[key]);
+    return keys;
+}
+
+/// The parts of a mesh file, each with name, vertices, triangles, uvs (v = 0 is the top), keys of its material, map and
+/// the material's name, None where there is none; the warnings; the files that were read or looked for.
+nb::tuple read_mesh_parts(const std::string& path) {
+    MeshData data;
+    std::vector<MeshPart> parts;
+    {
+        const nb::gil_scoped_release free;
+        data = read_mesh(path);
+        parts = placed_parts(data, {});
+    }
+    nb::list all;
+    for (MeshPart& part : parts) {
+        MeshSource& mesh = part.mesh;
+        const nb::object uvs =
+            mesh.uvs.empty() ? nb::none() : nb::cast(owned_rows<double, 2>(std::move(mesh.owned_uvs)));
+        const nb::object material = part.material ? nb::object(keys_of(*part.material)) : nb::none();
+        all.append(nb::make_tuple(part.name, owned_rows<double, 3>(std::move(mesh.owned_vertices)),
+                                  owned_rows<uint32_t, 3>(std::move(mesh.owned_triangles)), uvs, material,
+                                  part.material ? part.material->map : "", part.material ? part.material->name : ""));
+    }
+    return nb::make_tuple(all, data.warnings, data.files);
 }
 
 /// A vector of what rays meet as an array.
@@ -245,6 +296,9 @@ LentRenderer::~LentRenderer() {
 }
 
 void bind_scene(nb::module_& m) {
+    m.def("read_mesh", read_mesh_parts, "path"_a,
+          nb::sig("def read_mesh(path: str) -> tuple[list[typing.Any], list[str], list[str]]"),
+          "Reads a PLY or an OBJ. Internal.");
     bind_descriptions(m);
     bind_hits(m);
     nb::class_<Frames>(m, "Frames", "Frames that render when they are asked for. Internal.")
@@ -288,15 +342,11 @@ void bind_scene(nb::module_& m) {
             "transmittance",
             [](const std::shared_ptr<SceneHandle>& scene, const Given<double, -1, 3>& from,
                const Given<double, -1, 3>& to, const Keywords& keywords) {
-                auto shares = std::make_unique<std::vector<glm::dvec3>>();
+                std::vector<glm::dvec3> shares;
                 ask_renderer(scene, keywords, [&](Renderer& renderer) {
-                    *shares = renderer.transmittance(points_of(from), points_of(to));
+                    shares = renderer.transmittance(points_of(from), points_of(to));
                 });
-                const size_t count = shares->size();
-                const double* const first = count > 0 ? &shares->front().x : nullptr;
-                const nb::capsule owner(shares.release(),
-                                        [](void* p) noexcept { delete static_cast<std::vector<glm::dvec3>*>(p); });
-                return View<double, -1, 3>(first, {count, 3}, owner);
+                return owned_rows<double, 3>(std::move(shares));
             },
             "origins"_a, "targets"_a, "keywords"_a);
 }

@@ -103,6 +103,8 @@ struct TextureCase : CaseOf<Real, 3> {
         in.texture.height = draw.below(4) + 1;
         in.texture.first_texel = 0;
         in.texture.filter = draw.one_in(4) ? TextureFilter::nearest : TextureFilter::bilinear;
+        for (TextureWrap& wrap : in.texture.wrap)
+            wrap = draw.one_in(2) ? TextureWrap::repeat : TextureWrap(draw.below(3));
         for (double& repeat : in.texture.repeat) repeat = draw.one_in(2) ? 1.0 : draw.scaled<double>(-4, 4);
         for (Vec3<float>& texel : in.texels) texel = Vec3<float>(0.5f) + draw.in_cube<float>(0.5f);
         in.uv.x = coordinate(draw, in.texture.width);

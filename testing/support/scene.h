@@ -62,8 +62,7 @@ inline int add_material(SceneDescription& scene, double reflection = 0, double t
     return static_cast<int>(scene.materials.size()) - 1;
 }
 
-inline void add_object(SceneDescription& scene, std::variant<SolidObject, TrianglesObject, MeshObject> shape,
-                       int material) {
+inline void add_object(SceneDescription& scene, decltype(ObjectDescription::shape) shape, int material) {
     if (scene.materials.empty()) add_material(scene);
     ObjectDescription object;
     object.name = numbered("o", scene.objects.size());
@@ -180,7 +179,7 @@ Ray<Real> spawn(const Vec3<Real>& origin, const Vec3<Real>& direction, const Hit
 }
 
 /// Length of a line inside a Platonic solid about the origin whose planes are moved inward by `margin`.
-inline double chord(const PlatonicShape& shape, const Rotation& rotation, double radius, double margin,
+inline double chord(const Polyhedron& shape, const Rotation& rotation, double radius, double margin,
                     const dvec3& origin, const dvec3& direction) {
     double enter = -1e300, leave = 1e300;
     for (const auto& face : shape.faces) {

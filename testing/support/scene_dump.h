@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "scene/description/description.h"
+#include "scene/description/polyhedron.h"
 
 namespace cistula {
 
@@ -50,10 +50,12 @@ class SceneDump {
     }
 
     void write(const SolidObject& s) {
-        line(" solid", static_cast<int>(s.solid), s.center, s.radius, s.rotation);
+        line(" solid", polyhedron_of(s).name, s.center, s.radius, s.rotation);
+        for (const auto& p : polyhedron_of(s).planes) line(" planes", p.normal, p.low, p.high);
         const EdgeLights& e = s.edge_lights;
         line(" edge lights", e.count, e.color, e.glow, e.radius, e.visible, e.falloff);
     }
+    void write(const SphereObject& s) { line(" sphere", s.center, s.radius, s.rotation); }
     void write(const TrianglesObject& t) {
         for (const auto& vertex : t.vertices) line(" vertex", vertex);
         for (const auto& triangle : t.triangles) line(" triangle", triangle[0], triangle[1], triangle[2]);
@@ -72,7 +74,8 @@ class SceneDump {
         line("camera", s.camera.position, s.camera.target, s.camera.up, s.camera.field_of_view, s.camera.time_step);
         line("paths", s.camera.position_path, s.camera.target_path);
         for (const auto& t : s.textures)
-            line("texture", t.name, t.file, t.checker[0], t.checker[1], t.bilinear, t.repeat, t.colorspace, t.strict);
+            line("texture", t.name, t.file, t.checker[0], t.checker[1], t.bilinear, t.repeat, int(t.wrap[0]),
+                 int(t.wrap[1]), t.colorspace, t.strict);
         for (const auto& m : s.materials)
             line("material", m.name, m.color, m.texture, m.ambient, m.diffuse, m.specular, m.specular_color, m.exponent,
                  m.reflection, m.transmission, m.tint, m.index, m.absorption, m.fresnel);

@@ -245,7 +245,7 @@ TYPED_TEST(Images, IndexOneIsInvisible) {
     const int material = int(scene.materials.size()) - 1;
     TrianglesObject ring = torus(1.3, 0.55, 40, 24);
     for (glm::dvec3& p : ring.vertices) p += glm::dvec3{0.4, -0.3, 1.1};
-    std::vector<std::pair<std::string, std::variant<SolidObject, TrianglesObject, MeshObject>>> shapes;
+    std::vector<std::pair<std::string, decltype(ObjectDescription::shape)>> shapes;
     for (const PlatonicSolid kind : {PlatonicSolid::icosahedron, PlatonicSolid::tetrahedron}) {
         SolidObject shape;
         shape.solid = kind;

@@ -17,7 +17,7 @@ constexpr double ulps = 4e-16;
 
 class Platonic : public ::testing::TestWithParam<int> {
   protected:
-    const PlatonicShape& shape() const { return platonic_shape(static_cast<PlatonicSolid>(GetParam())); }
+    const Polyhedron& shape() const { return platonic_shape(static_cast<PlatonicSolid>(GetParam())); }
 };
 
 struct Numbers {
@@ -87,7 +87,7 @@ TEST_P(Platonic, PlanesHoldTheirFacesAndNothingIsBeyond) {
         const auto& planes = shape().planes[face.id / 2];
         EXPECT_EQ(face.normal, face.id % 2 ? planes.normal : -planes.normal);
         EXPECT_NEAR(length(planes.normal), 1, ulps);
-        EXPECT_EQ(planes.single, GetParam() == 0);
+        EXPECT_EQ(planes.low == -INFINITY, GetParam() == 0);
         for (uint32_t i = 0; i < shape().vertices.size(); ++i) {
             const double distance = dot(face.normal, shape().vertices[i]);
             const bool on = std::count(face.vertices.begin(), face.vertices.end(), i) > 0;

@@ -8,6 +8,7 @@
 
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
+#include "testing/support/expect_error.h"
 #include "testing/support/scene_samples.h"
 
 namespace cistula {
@@ -55,6 +56,29 @@ TEST(SmallestPart, ASolidHasItsInradius) {
         add_object(scene, solid(kind, {0, 0, 4}, 0.75));
         expect_part(scene, 0.75 * platonic_shape(kind).inradius, "/objects/1: object 1: its inradius");
     }
+}
+
+TEST(SmallestPart, ASolidThatIsAPointInDoubleIsRefused) {
+    for (const double distance : {1e14, 1e16, 1e30}) {
+        SceneDescription scene = floor_scene();
+        add_object(scene, cube({0, 0, 4}, 1));
+        add_object(scene, cube({0, 0, distance}, distance / 4));
+        if (distance < 1e15)
+            EXPECT_LT(smallest_part(scene).share, least_share(Precision::double_));
+        else
+            EXPECT_ERROR(
+                smallest_part(scene), ExitCode::usage,
+                "test.json: /objects/1: so small beside the scene that double precision makes a point of it; give it a "
+                "larger radius, or bring what is far away nearer");
+    }
+}
+
+TEST(SmallestPart, TheSizeOfABodyOfPlanesIsThatOfItsCorners) {
+    SolidObject large;
+    large.body = std::make_shared<const Polyhedron>(box_body(glm::dvec3(1e17)));  // at a scale of 1
+    SceneDescription scene = empty_scene();
+    add_object(scene, large);
+    EXPECT_GT(smallest_part(scene).share, 0.1);
 }
 
 TEST(SmallestPart, TheCameraDoesNotMatter) {

@@ -41,7 +41,7 @@ std::string ply(const std::vector<dvec3>& vertices, const std::vector<std::vecto
 
 /// A solid of radius sqrt(3), so that the numbers of a cube are exact.
 std::string ply_of(PlatonicSolid solid) {
-    const PlatonicShape& shape = platonic_shape(solid);
+    const Polyhedron& shape = platonic_shape(solid);
     std::vector<dvec3> vertices;
     for (const dvec3& p : shape.vertices) vertices.push_back(p * std::sqrt(3.0));
     std::vector<std::vector<uint32_t>> faces;
@@ -120,7 +120,7 @@ class ConvexMeshes : public testing::Test {
     }
 
     /// The film of the room with a body of one of its materials; whether the body is given by planes.
-    static Film film(const std::variant<SolidObject, TrianglesObject, MeshObject>& body, int material, bool by_planes) {
+    static Film film(const decltype(ObjectDescription::shape)& body, int material, bool by_planes) {
         SceneDescription scene = lit_room();
         test::add_object(scene, body, material);
         const auto compiled = test::compile<Real>(scene);

@@ -16,14 +16,14 @@ using test::Count;
 using test::Random;
 
 /// A solid's corners in the frame of a scene that holds it alone.
-std::vector<dvec3> corners(const PlatonicShape& shape, const Rotation& rotation, double radius) {
+std::vector<dvec3> corners(const Polyhedron& shape, const Rotation& rotation, double radius) {
     std::vector<dvec3> points;
     for (const dvec3& p : shape.vertices) points.push_back(rotation(p * radius));
     return points;
 }
 
 /// A corner, a point of an edge or its middle, the middle of a face, or a point close to the silhouette.
-dvec3 target_on(Random& random, const PlatonicShape& shape, const std::vector<dvec3>& points) {
+dvec3 target_on(Random& random, const Polyhedron& shape, const std::vector<dvec3>& points) {
     const auto& face = shape.faces[random.below(uint32_t(shape.faces.size()))];
     const auto& edge = shape.edges[random.below(uint32_t(shape.edges.size()))];
     const dvec3 &a = points[edge.vertices[0]], &b = points[edge.vertices[1]];
@@ -59,7 +59,7 @@ TYPED_TEST(ConvexTest, SolidsAreEnteredAndLeftExactlyOnce) {
                 const auto scene = test::compile<Real>(description);
                 const SceneView<Real> view = scene->view();
                 ASSERT_EQ(view.convex.size, 1u);
-                const PlatonicShape& shape = platonic_shape(solid);
+                const Polyhedron& shape = platonic_shape(solid);
                 const double radius = std::ldexp(scale, scene->scale);
                 const dvec3 center = (dvec3(3, -2, 5) * scale - scene->center) * std::ldexp(1.0, scene->scale);
                 const auto points = corners(shape, Rotation(turn), radius);
@@ -116,7 +116,7 @@ TYPED_TEST(ConvexTest, TheSphereAroundASolidDecidesNothing) {
             CompiledScene<Real> bare = *scene;
             for (Solid& s : bare.solids) s.padded_square = 1e30f;
             const SceneView<Real> bare_view = bare.view();
-            const PlatonicShape& shape = platonic_shape(solid);
+            const Polyhedron& shape = platonic_shape(solid);
             const auto points = corners(shape, Rotation(turn), size);
             for (int i = 0; i < 40000; ++i) {
                 const Vec3<Real> origin(random.direction() * 3.9);
@@ -187,7 +187,7 @@ TYPED_TEST(ConvexTest, TouchingSolidsShareTheirFace) {
     for (const PlatonicSolid solid :
          {PlatonicSolid::cube, PlatonicSolid::octahedron, PlatonicSolid::dodecahedron, PlatonicSolid::icosahedron})
         for (int placement = 0; placement < 6; ++placement) {
-            const PlatonicShape& shape = platonic_shape(solid);
+            const Polyhedron& shape = platonic_shape(solid);
             const dvec3 turn = placement == 0 ? dvec3(0) : random.in_cube(180), center = random.in_cube(1);
             const dvec3 normal = Rotation(turn)(shape.faces[random.below(uint32_t(shape.faces.size()))].normal);
             SceneDescription description;

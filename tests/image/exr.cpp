@@ -15,8 +15,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstring>
 #include <random>
+#include <thread>
 
 #include "cistula/numerics/portable.h"
 #include "image/exr/exr_file.h"
@@ -258,6 +261,16 @@ TEST(Exr, TruncatedFilesAreFound) {
             }
         }
     }
+    put_bytes(cut, bytes + "x");
+    EXPECT_FALSE(exr_is_complete(cut)) << "and those with more";
+    for (const Compression compression : {Compression::none, Compression::zips, Compression::piz}) {
+        LayeredPicture picture = gradient(64, 100);
+        picture.compression = compression;
+        write_exr(whole, std::vector<PicturePart>{{"a", picture}, {"b", picture}});
+        EXPECT_TRUE(exr_is_complete(whole));
+        put_bytes(cut, bytes_of(whole) + '\0');
+        EXPECT_FALSE(exr_is_complete(cut));
+    }
     EXPECT_FALSE(exr_is_complete(scratch.file("none.exr")));
     EXPECT_FALSE(exr_is_complete(scratch.file("")));
 }
@@ -403,6 +416,31 @@ TEST(ExrTexture, TilesIntegersAndOtherCompressions) {
         file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
     }
     check();
+}
+
+TEST(Exr, WritingEndsHalfASecondAfterAnInterruption) {
+    const ScratchDirectory scratch;
+    std::atomic<int> calls = 0;
+    LayeredPicture picture;
+    picture.width = picture.display_width = 64;
+    picture.height = picture.display_height = 20000;
+    picture.channels = {{"Y", false, {}, [&](size_t first, size_t last, float* to) {
+                             ++calls;
+                             std::this_thread::sleep_for(std::chrono::milliseconds(20));
+                             std::fill_n(to, last - first, 1.f);
+                         }}};
+    std::atomic<bool> stop = true;
+    for (const auto compression : {Compression::zip, Compression::rle}) {
+        picture.compression = compression;
+        calls = 0;
+        EXPECT_ERROR(write_exr(scratch.file("a.exr"), picture, 1, stop), ExitCode::interrupted,
+                     "interrupted; nothing was written");
+        EXPECT_LT(calls, 1250);  // those of the whole picture
+        EXPECT_TRUE(scratch.names().empty());
+    }
+    picture.height = picture.display_height = 64;  // what takes no longer is written
+    write_exr(scratch.file("a.exr"), picture, 1, stop);
+    EXPECT_TRUE(exr_is_complete(scratch.file("a.exr")));
 }
 
 }  // namespace

@@ -231,6 +231,27 @@ TEST(Elementary, TanWithinStatedError) {
     worst.expect("tan", e::tan_worst_ulp);
 }
 
+TEST(Elementary, Atan2WithinStatedError) {
+    Worst worst;
+    Random random(9);
+    for (int i = 0; i < 400'000; ++i) {
+        double x = double(random.between(-1, 1));
+        double y = double(random.between(-1, 1));
+        if (i % 4 == 1) y *= std::ldexp(1.0, -(i % 60));
+        if (i % 4 == 2) x *= std::ldexp(1.0, -(i % 60));
+        if (i % 4 == 3) y = x * (i % 33 / 16.0 - 1) * (1 + y * std::ldexp(1.0, -(i % 53)));  // near k / 16
+        if (y == 0) continue;
+        worst.see(e::atan2(y, x), atan2q(y, x), y);
+        ASSERT_EQ(e::atan2(-y, x), -e::atan2(y, x));
+    }
+    worst.expect("atan2", e::atan2_worst_ulp);
+    EXPECT_EQ(e::atan2(0, 0), 0);
+    EXPECT_EQ(e::atan2(0, 1), 0);
+    EXPECT_EQ(e::atan2(0, -1), 0x1.921fb54442d18p+1);
+    EXPECT_EQ(e::atan2(1, 0), 0x1.921fb54442d18p+0);
+    EXPECT_EQ(e::atan2(1, 1), 0x1.921fb54442d18p-1);
+}
+
 TEST(Elementary, AngleSymmetriesAndSpecialValues) {
     angles(8, [](double x) {
         ASSERT_EQ(e::sin(-x), -e::sin(x)) << x;

@@ -11,7 +11,7 @@ package=$(echo "$work"/*.deb)
 [ -f "$package" ] || fail "not one package: $package"
 [[ $(basename "$package") =~ ^cistula_[0-9.]+-1~[a-z]+[0-9.]*_amd64\.deb$ ]] || fail "its name is $package"
 depends=$(dpkg-deb --field "$package" Depends)
-for library in libc6 libdeflate libembree libtbb libpng libopenexr libfmt; do
+for library in libc6 libdeflate libembree libtbb libpng libqhull libopenexr libfmt; do
     [[ ", $depends" == *", $library"* ]] || fail "does not depend on $library: $depends"
 done
 [ "$(dpkg-deb --field "$package" Package)" = cistula ] || fail "it is $(dpkg-deb --field "$package" Package)"

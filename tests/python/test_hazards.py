@@ -129,8 +129,9 @@ def test_a_fork_after_use_says_so_and_a_spawned_process_works(scene: cistula.Sce
 def test_a_fork_before_use_works() -> None:
     code = """import cistula, os
 pid = os.fork()
-print(cistula.Scene.load('scenes/platonic.json').render(size=(64, 36)).hash, flush=True)
-if pid: os.waitpid(pid, 0)"""
+hash = cistula.Scene.load('scenes/platonic.json').render(size=(64, 36)).hash
+if pid: os.waitpid(pid, 0)
+print(hash, flush=True)"""
     lines = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=SOURCE, timeout=60).stdout.split()
     assert len(lines) == 2 and lines[0] == lines[1]
 

@@ -1,4 +1,4 @@
-"""Rays, segments, pixels and comparisons."""
+"""Rays, segments, pixels, comparisons and the self-check."""
 from __future__ import annotations
 
 import json
@@ -36,6 +36,26 @@ def test_rays_meet_what_pixels_show(name: str) -> None:
     same = hits.object == image.id.ravel()[seen] - 1
     normals = image.normal.reshape(-1, 3)[seen][same]
     assert np.abs(np.einsum("ij,ij->i", hits.normal[same], normals)).min() > 0.99
+
+
+@pytest.mark.parametrize("name", ["platonic", "glass", "hard/far-camera"])
+def test_rays_meet_what_trees_of_pixels_say(name: str) -> None:
+    """Those that start at the camera, however far, exactly; those that start on faces a little off them (docs/python.md, Rays)."""
+    scene = cistula.Scene.load(SOURCE / "scenes" / f"{name}.json")
+    image = scene.render(size=(64, 36), supersample=1, layers="id")
+    began_on_faces = 0
+    for x, y in [(x, y) for y in range(1, 36, 7) for x in range(2, 64, 9)]:
+        first, *others = scene.pixel(x, y, size=(64, 36), supersample=1).rays
+        assert first.end == "light" or scene.intersect(first.origin, first.direction).object[0] == image.id[y, x] - 1
+        others = [ray for ray in others if ray.end in ("surface", "background")]
+        if not others:
+            continue
+        origins, directions = (np.array([getattr(ray, key) for ray in others]) for key in ("origin", "direction"))
+        extent = np.ptp(origins, axis=0).max()
+        hits = scene.intersect(origins + 1e-5 * extent * directions, directions)
+        assert hits.object.tolist() == [scene.objects.index(ray.surface.object) if ray.surface else -1 for ray in others]
+        began_on_faces += len(others)
+    assert began_on_faces > 100
 
 
 def test_hits_are_arrays_by_ray() -> None:
@@ -95,8 +115,8 @@ def test_a_pixel_is_its_rays(scene: cistula.Scene, programs: Path) -> None:
 
 def test_pictures_are_compared(scene: cistula.Scene, tmp_path: Path) -> None:
     image, other = (scene.render(size=(32, 18), depth=depth) for depth in (8, 2))
-    image.save(str(tmp_path / "a.exr"))
-    other.save(str(tmp_path / "b.exr"))
+    image.save(tmp_path / "a.exr")
+    other.save(tmp_path / "b.exr")
     assert cistula.compare(image, image) and cistula.compare(image, tmp_path / "a.exr")
     differ = cistula.compare(tmp_path / "a.exr", tmp_path / "b.exr")
     assert not differ and not differ.passes and "differ" in differ.verdict and any("depth" in line for line in differ.header)
@@ -107,3 +127,19 @@ def test_pictures_are_compared(scene: cistula.Scene, tmp_path: Path) -> None:
     assert cistula.compare(image, other, layers="A", fail=0) and json.loads(differ.json())
     with pytest.raises(cistula.FileError, match="none.exr"):
         cistula.compare(image, tmp_path / "none.exr")
+
+
+def test_the_renderer_checks_itself() -> None:
+    told: list[cistula.CaseResult] = []
+    results = cistula.verify(True, cases="geometry/axis-parallel", precision="double", progress=told.append)
+    assert {row.intersector for row in results} >= {"embree", "bvh", "brute"} and {row.precision for row in results} == {"double"}
+    assert all(results) and len(told) == len(results) and all(row.tried > 0 and row.unit and not row.complaint for row in results)
+    with pytest.raises(cistula.ArgumentError, match="backend=embre: must be embree or cuda or all; did you mean 'embree'"):
+        cistula.verify(backend="embre")
+    with pytest.raises(cistula.ArgumentError, match="geometry/nothing"):
+        cistula.verify(cases=["geometry/nothing"])
+
+    def stop(row: cistula.CaseResult) -> None:
+        raise InterruptedError(row.name)
+    with pytest.raises(InterruptedError, match="geometry/axis-parallel"):
+        cistula.verify(True, cases=["geometry/axis-parallel"], progress=stop)

@@ -36,8 +36,8 @@ def test_files_are_those_of_render_byte_for_byte(source: Path, render: Render, t
     scene = source / "scenes" / "glass.json"
     image = cistula.Scene.load(scene).render(size=(64, 36), crop=(20, 10, 5, 6), depth=6, layers=("Z", "N", "cryptomatte"), bits="half",
                                              background="transparent", colorspace="lin_ap1_scene", compression="zips")
-    image.save(str(tmp_path / "ours.exr"))
-    image.preview(str(tmp_path / "ours.png"), exposure=1, view="filmic", bloom=0.5)
+    image.save(tmp_path / "ours.exr")
+    image.preview(tmp_path / "ours.png", exposure=1, view="filmic", bloom=0.5)
     render(scene, "--res", "64x36", "--crop", "20x10+5+6", "--depth", "6", "--layers", "Z,N,cryptomatte", "--bits", "half", "--background",
            "transparent", "--colorspace", "lin_ap1_scene", "--compression", "zips", "--preview", str(tmp_path / "file.png"), "--exposure",
            "1", "--view", "filmic", "--bloom", "0.5")

@@ -2,15 +2,19 @@
 from __future__ import annotations
 
 import json
+import os
 import pickle
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import OpenImageIO as oiio
 import pytest
 
 import cistula
+from cistula import _core
 from cistula._processor import lacking
 
 CUBE = {"name": "cube", "solid": "cube", "material": "clay"}
@@ -57,6 +61,29 @@ def test_textures_are_arrays() -> None:
     assert seen[:3, :4].all() and not seen[3:].any() and not seen[:, 4:].any()
 
 
+@pytest.mark.skipif(not _core.reads_all_pictures, reason="built without OpenImageIO")
+@pytest.mark.parametrize("name,dtype,channels", [("a.png", "uint8", 3), ("gray.png", "uint8", 1), ("alpha.png", "uint8", 4),
+                                                 ("deep.png", "uint16", 3), ("a.jpg", "uint8", 3), ("a.tif", "float32", 3)])
+def test_textures_that_a_wheel_reads_are_those_of_the_library(name: str, dtype: str, channels: int, tmp_path: Path,
+                                                              monkeypatch: pytest.MonkeyPatch) -> None:
+    numbers = np.random.default_rng(3).random((5, 7, channels)) * (1 if dtype == "float32" else np.iinfo(dtype).max)
+    picture = oiio.ImageOutput.create(str(tmp_path / name))
+    assert picture and picture.open(str(tmp_path / name), oiio.ImageSpec(7, 5, channels, dtype)) and picture.write_image(numbers.astype(dtype))
+    picture.close()
+    scene = {**SCENE, "textures": {"t": {"file": name}}, "materials": {"m": {"texture": "t"}},
+             "objects": [{"name": "q", "quad": [[-3, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]], "material": "m"}]}
+    native = cistula.Scene.from_dict(scene, folder=tmp_path)
+    monkeypatch.setattr(_core, "reads_all_pictures", False)
+    ours = cistula.Scene.from_dict(scene, folder=tmp_path)
+    assert ours.render().hash == native.render().hash
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    assert _core.run_program("render", [b"-q", b"-o", os.fsencode(tmp_path / "a.exr"), os.fsencode(tmp_path / "scene.json")]) == 0
+    assert cistula.compare(tmp_path / "a.exr", native.render(), layers="R,G,B,A", fail=0)
+    monkeypatch.setitem(sys.modules, "OpenImageIO", None)
+    with pytest.raises(cistula.FileError, match="pip install openimageio"):
+        cistula.Scene.from_dict(scene, folder=tmp_path)
+
+
 def test_a_wrong_scene_is_told_by_its_pointer() -> None:
     with pytest.raises(cistula.SceneError) as error:
         cistula.Scene.from_dict({**SCENE, "objects": [{**CUBE, "solid": "cubee"}]})
@@ -65,6 +92,9 @@ def test_a_wrong_scene_is_told_by_its_pointer() -> None:
         cistula.Scene.from_dict({**SCENE, "lights": [{"position": [0, float("nan"), 0]}]})
     assert error.value.pointer == "/lights/0/position/1"
     assert isinstance(error.value, ValueError) and pickle.loads(pickle.dumps(error.value)).pointer == error.value.pointer
+    with pytest.raises(cistula.FileError, match="none.obj") as missing:
+        cistula.Scene.from_dict({**SCENE, "objects": [{"name": "m", "mesh": "none.obj", "material": "clay"}]})
+    assert missing.value.pointer == "/objects/0"
     with pytest.raises(cistula.SceneError) as error:
         cistula.SceneBuilder(SCENE).mesh("t", CORNERS, FACES, material="clya").build()
     assert error.value.pointer == "/objects/1/material"
@@ -90,6 +120,14 @@ def test_files_that_are_wrong(tmp_path: Path) -> None:
     (lambda s: s.render(bits="hlaf"), "bits=hlaf: must be float or half; did you mean 'half'"),
     (lambda s: s.render(devices=[1]), "devices=1: "),
     (lambda s: s.render(frame=-1), "frame=-1: must be 0 or more"),
+    (lambda s: s.render(frame=1.5), "frame=1.5: must be a whole number"),
+    (lambda s: s.pixel(1, 2.5), "y=2.5: must be a whole number"),
+    (lambda s: s.pixel(1, 2, sample=9), 'sample=9: must be "middle" or 0 to 0'),
+    (lambda s: s.render().save("a.png"), "path=a.png: must be named [*].exr"),
+    (lambda s: s.render().preview("a.jpg"), "path=a.jpg: must be named [*].png"),
+    (lambda s: cistula.compare(s.render(), s.render(), fail=float("nan")), "fail=nan: must be a number from 0 to inf"),
+    (lambda s: cistula.compare(s.render(), s.render(), failpercent=120, fail=1), "failpercent=120: must be a number from 0 to 100"),
+    (lambda s: cistula.compare(s.render(), s.render(), failpercent=3), "failpercent=3: is for fail"),
     (lambda s: s.pixel(32, 0), "x=32, y=0: is outside of the frame, which is 32x24"),
     (lambda s: s.intersect([0, 0], [1, 0]), "origins: must be N x 3 numbers"),
     (lambda s: s.intersect(np.zeros((2, 3)), np.ones((3, 3))), "directions: has 3 rows, origins 2"),

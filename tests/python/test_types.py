@@ -2,9 +2,12 @@
 from __future__ import annotations
 
 import inspect
+import re
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
 
 import cistula
 
@@ -48,3 +51,14 @@ def test_everything_public_is_documented() -> None:
             for part in (part for part in vars(value) if not part.startswith("_")):
                 documented = getattr(value, part)
                 assert getattr(documented, "__doc__", None) or not (callable(documented) or isinstance(documented, property)), (name, part)
+
+
+def test_what_pages_show_runs(tmp_path: Path, source: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first Python of each page, in a smaller size."""
+    (tmp_path / "scenes").symlink_to(source / "scenes")
+    monkeypatch.chdir(tmp_path)
+    for page in ("README.md", "docs/python.md"):
+        code = (source / page).read_text().split("```python\n")[1].split("```")[0]
+        exec(re.sub(r"render\(.*\)", "render(size=(32, 18))", code), {})
+        assert (tmp_path / "platonic.png").exists()
+        (tmp_path / "platonic.png").unlink()

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "scene/description/light_group.h"
+#include "scene/description/polyhedron.h"
 #include "scene/readers/read_scene.h"
+#include "scene/readers/scene_keys.h"
 #include "testing/support/expect_error.h"
 
 namespace cistula {
@@ -22,6 +24,24 @@ SceneDescription read_objects(const std::string& objects) {
 template <class Shape>
 Shape shape_of(const std::string& object) {
     return std::get<Shape>(read_objects(object).objects.at(0).shape);
+}
+
+TEST(SceneSpheres, EveryKeyArrives) {
+    const ObjectDescription object = read_objects(R"({"name": "ball", "solid": "sphere", "center": [1, 2, 3],
+        "radius": 4, "rotate": [5, 6, 7], "material": "tiles"})")
+                                         .objects.at(0);
+    EXPECT_EQ(object.name, "ball");
+    const auto& sphere = std::get<SphereObject>(object.shape);
+    EXPECT_EQ(sphere.center, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(sphere.radius, 4);
+    EXPECT_EQ(sphere.rotation, glm::dvec3(5, 6, 7));
+}
+
+TEST(SceneSpheres, HaveNoEdges) {
+    EXPECT_WRONG_OBJECT(R"({"solid": "sphere", "material": "glass", "edge_lights": {"count": 1}})",
+                        "/edge_lights: unknown key; known keys: name, solid, center, radius, rotate, material");
+    EXPECT_WRONG_OBJECT(R"({"solid": "spere", "material": "glass"})",
+                        "/solid: unknown value 'spere'; did you mean 'sphere'?");
 }
 
 TEST(SceneSolids, EveryKeyArrives) {
@@ -59,11 +79,16 @@ TEST(SceneSolids, AllFiveByName) {
 TEST(SceneSolids, Errors) {
     EXPECT_WRONG_OBJECT(R"({"solid": "octahedrom", "material": "glass"})",
                         "/solid: unknown value 'octahedrom'; did you mean 'octahedron'?");
-    EXPECT_WRONG_OBJECT(
-        R"({"solid": "sphere", "material": "glass"})",
-        "/solid: unknown value 'sphere'; known values: tetrahedron, cube, octahedron, dodecahedron, icosahedron");
-    EXPECT_WRONG_OBJECT(R"({"solid": 8, "material": "glass"})",
-                        "/solid: expected one of tetrahedron, cube, octahedron, dodecahedron, icosahedron, found 8");
+    std::string names;
+    for (const KeyTable* table : {&sphere_keys, &box_keys, &convex_keys, &prism_keys, &solid_keys})
+        for (const std::string_view name : table->find("solid")->choices)
+            names += (names.empty() ? "" : ", ") + std::string(name);
+    EXPECT_WRONG_OBJECT(R"({"solid": "torus", "material": "glass"})",
+                        "/solid: unknown value 'torus'; known values: " +
+                            names.substr(0, names.find(", truncated-cuboctahedron")) + ", ...");
+    EXPECT_WRONG_OBJECT(R"({"solid": "truncatedcube", "material": "glass"})",
+                        "/solid: unknown value 'truncatedcube'; did you mean 'truncated-cube'?");
+    EXPECT_WRONG_OBJECT(R"({"solid": 8, "material": "glass"})", "/solid: expected one of " + names + ", found 8");
     EXPECT_WRONG_OBJECT(R"({"solid": "cube", "radius": 0, "material": "glass"})",
                         "/radius: expected a number from 1e-30 to 1e30, found 0");
     EXPECT_WRONG_OBJECT(R"({"solid": "cube", "center": [1, 2], "material": "glass"})",
@@ -85,6 +110,58 @@ TEST(SceneSolids, Errors) {
                         "/scale: unknown key; known keys: name, solid, center, radius, rotate, material, edge_lights");
     EXPECT_WRONG_OBJECT(R"({"solid": "cube", "material": "glass", "name": ""})",
                         "/name: expected a string that is not empty, found an empty string");
+}
+
+TEST(SceneSolids, BodiesOfOtherKinds) {
+    const auto body = [](const std::string& keys) {
+        return shape_of<SolidObject>("{" + keys + R"(, "center": [1, 2, 3], "rotate": [4, 5, 6], "material": "glass",
+            "edge_lights": {"count": 3}})");
+    };
+    const SolidObject box = body(R"("solid": "box", "size": [1, 2, 4])");
+    EXPECT_EQ(box.body->name, "box");
+    EXPECT_EQ(box.body->planes[2].high, 2);
+    EXPECT_EQ(box.center, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(box.rotation, glm::dvec3(4, 5, 6));
+    EXPECT_EQ(box.radius, 1);
+    EXPECT_EQ(box.edge_lights.count, 3);
+    const SolidObject snub = body(R"("solid": "snub-cube", "radius": 2)");
+    EXPECT_EQ(snub.body->name, "snub-cube");
+    EXPECT_EQ(snub.radius, 2);
+    const SolidObject pyramid = body(R"("solid": "pyramid", "sides": 5, "height": 3)");
+    EXPECT_EQ(pyramid.body->faces.size(), 6u);
+    EXPECT_EQ(pyramid.body->vertices[5], glm::dvec3(0, 0, 1.5));
+    EXPECT_EQ(body(R"("solid": "prism", "sides": 5, "radius": 3)").body->vertices[0], glm::dvec3(3, 0, -0.5));
+    const SolidObject planes = body(R"("solid": "convex", "scale": 2,
+        "planes": [[-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -2, 0], [1, 1, 1, 1]])");
+    EXPECT_EQ(planes.body->faces.size(), 4u);
+    EXPECT_EQ(planes.radius, 2);
+    EXPECT_EQ(body(R"("solid": "convex", "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])").body->faces.size(),
+              4u);
+}
+
+TEST(SceneSolids, BodyErrors) {
+    const auto wrong = [](const std::string& keys, const std::string& message) {
+        EXPECT_WRONG_OBJECT("{" + keys + R"(, "material": "glass"})", message);
+    };
+    wrong(R"("solid": "box", "radius": 1, "size": [1, 1, 1])",
+          "/radius: unknown key; known keys: name, solid, size, center, rotate, material, edge_lights");
+    wrong(R"("solid": "box", "size": [1, 0, 1])", "/size/1: expected a number from 1e-30 to 1e30, found 0");
+    wrong(R"("solid": "box", "size": [1, 1e-20, 1])", "/size: the body is flat, or nearly so; give one with an inside");
+    wrong(R"("solid": "prism", "sides": 2)", "/sides: expected a whole number from 3 to 255, found 2");
+    wrong(R"("solid": "antiprism", "sides": 128)",
+          "/sides: the body has 258 faces; expected at most 256; give it as a mesh");
+    wrong(R"("solid": "convex")", ": expected one of the keys 'planes' and 'points'");
+    wrong(R"("solid": "convex", "planes": [], "points": [])", ": expected one of 'planes' and 'points', found both");
+    wrong(R"("solid": "convex", "planes": [[1, 0, 0, 1]])",
+          "/planes: expected an array of at least four planes [nx, ny, nz, d], found an array of 1");
+    wrong(R"("solid": "convex", "planes": [[1, 0, 0], 1, 2, 3])",
+          "/planes/0: expected a plane [nx, ny, nz, d], found an array of 3");
+    wrong(R"("solid": "convex", "planes": [[1, 0, 0, 1], [0, 0, 0, 1], 2, 3])",
+          "/planes/1: the normal is 0; give the direction in which the face looks");
+    wrong(R"("solid": "convex", "planes": [[1, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1]])",
+          "/planes: the planes leave the body open toward [0, 0, -1]; add a plane that faces there");
+    wrong(R"("solid": "convex", "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])",
+          "/points: the points lie in one plane, or nearly so; give corners of a body with an inside");
 }
 
 TEST(SceneSolids, EdgeLightErrors) {

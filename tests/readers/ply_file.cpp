@@ -1,5 +1,6 @@
 #include "scene/readers/meshes/mesh_formats.h"
 
+#include <atomic>
 #include <bit>
 #include <cstring>
 
@@ -177,6 +178,13 @@ TEST(PlyFile, NormalsOfVerticesAreIgnoredWithAWarning) {
         text = replaced(text, vertex, vertex + std::string(" 0 0 1"));
     expect_triangle(read_ply(text, "a.ply", warnings));
     EXPECT_EQ(warnings, (std::vector<std::string>{"a.ply: ignored what has no meaning here: 'nx', 'ny', 'nz'"}));
+}
+
+TEST(PlyFile, ReadingIsStopped) {
+    std::vector<std::string> warnings;
+    const std::atomic<bool> given = true;
+    EXPECT_THROW(read_ply(triangle, "a.ply", warnings, given), Error);
+    EXPECT_THROW(read_obj("v 0 0 0\n", "a.obj", {}, warnings, given), Error);
 }
 
 TEST(PlyFile, WrongHeadersAreNamedByLine) {

@@ -190,6 +190,13 @@ TEST(SceneTextures, FilesAndCheckers) {
     EXPECT_EQ(textures[1].repeat, glm::dvec2(5, 4));
     EXPECT_FALSE(textures[1].bilinear);
     EXPECT_TRUE(scene_with(R"("textures": {"a": {"file": "a.exr", "filter": "bilinear"}})").textures[0].bilinear);
+    using Wraps = std::array<TextureWrap, 2>;
+    const auto wrap = [](const std::string& value) {
+        return scene_with(R"("textures": {"a": {"file": "a.exr", "wrap": )" + value + "}}").textures[0].wrap;
+    };
+    EXPECT_EQ(textures[0].wrap, (Wraps{TextureWrap::repeat, TextureWrap::repeat}));
+    EXPECT_EQ(wrap("\"clamp\""), (Wraps{TextureWrap::clamp, TextureWrap::clamp}));
+    EXPECT_EQ(wrap("[\"mirror\", \"repeat\"]"), (Wraps{TextureWrap::mirror, TextureWrap::repeat}));
 }
 
 TEST(SceneTextures, Errors) {
@@ -210,7 +217,14 @@ TEST(SceneTextures, Errors) {
     EXPECT_WRONG(wrong(R"({"file": "a", "repeat": 2})"),
                  "a.json: /textures/t/repeat: expected [u, v], each above 0, to 1000000, found 2");
     EXPECT_WRONG(wrong(R"({"checker": [0, 1], "filter": "nearest"})"),
-                 "a.json: /textures/t/filter: unknown key; known keys: checker, repeat");
+                 "a.json: /textures/t/filter: unknown key; known keys: checker, repeat, wrap");
+    EXPECT_WRONG(wrong(R"({"file": "a", "wrap": "mirrored"})"),
+                 "a.json: /textures/t/wrap: unknown value 'mirrored'; did you mean 'mirror'?");
+    EXPECT_WRONG(wrong(R"({"checker": [0, 1], "wrap": ["clamp", "border"]})"),
+                 "a.json: /textures/t/wrap/1: unknown value 'border'; known values: repeat, clamp, mirror");
+    EXPECT_WRONG(wrong(R"({"file": "a", "wrap": ["clamp"]})"),
+                 "a.json: /textures/t/wrap: expected one of repeat, clamp, mirror, or two of them for u and v, found "
+                 "an array of 1");
     for (const char* colors : {"[0]", "[0, 1, 1]"})
         EXPECT_WRONG(wrong("{\"checker\": " + std::string(colors) + "}"),
                      "a.json: /textures/t/checker: expected an array of two colors, found an array of " +

@@ -133,7 +133,7 @@ TYPED_TEST(ShadowTest, LightsOnASolidObeyItsHalfSpaces) {
         for (const PlatonicSolid solid : test::platonic_solids)
             for (int where = 0; where < 9; ++where)
                 for (const double transmission : {0.0, 0.25}) {
-                    const PlatonicShape& shape = platonic_shape(solid);
+                    const Polyhedron& shape = platonic_shape(solid);
                     const dvec3 turn = where < 3 ? dvec3(0) : random.in_cube(180), center = random.in_cube(1);
                     const Rotation rotation(turn);
                     const auto& edge = shape.edges[random.below(uint32_t(shape.edges.size()))];

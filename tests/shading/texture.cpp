@@ -14,10 +14,12 @@ const std::vector<Vec3<float>> texels = {{9, 9, 9},  // another texture's
 template <class Real>
 class TextureTest : public testing::Test {
   public:
-    static Vec3<Real> at(TextureFilter filter, double u, double v, double repeat_u = 1, double repeat_v = 1) {
+    static Vec3<Real> at(TextureFilter filter, double u, double v, double repeat_u = 1, double repeat_v = 1,
+                         TextureWrap wrap_u = TextureWrap::repeat, TextureWrap wrap_v = TextureWrap::repeat) {
         SceneView<Real> scene{};
         scene.texels = {texels.data(), uint32_t(texels.size())};
-        return texture_at(scene, Texture{3, 2, 1, filter, {repeat_u, repeat_v}}, Vec2<Real>(Real(u), Real(v)));
+        return texture_at(scene, Texture{3, 2, 1, filter, {wrap_u, wrap_v}, {repeat_u, repeat_v}},
+                          Vec2<Real>(Real(u), Real(v)));
     }
     static Vec3<Real> rgb(double r, double g) { return {Real(r), Real(g), Real(1)}; }
 };
@@ -67,6 +69,27 @@ TYPED_TEST(TextureTest, BilinearIsExactAtCentersAndLinearBetween) {
     EXPECT_EQ(T::at(bilinear, 0.5, 0.25), T::rgb(1, 0));
 }
 
+TYPED_TEST(TextureTest, ClampAndMirrorContinueEachAxisInTheirWay) {
+    using T = TestFixture;
+    const auto nearest = TextureFilter::nearest, bilinear = TextureFilter::bilinear;
+    const auto clamp = TextureWrap::clamp, mirror = TextureWrap::mirror, repeat = TextureWrap::repeat;
+    for (const double u : {-7.5, -1e-6, 0.1}) EXPECT_EQ(T::at(nearest, u, 0.75, 1, 1, clamp), T::rgb(0, 1)) << u;
+    for (const double u : {0.9, 1.0, 1.3, 1e20}) EXPECT_EQ(T::at(nearest, u, 0.75, 1, 1, clamp), T::rgb(2, 1)) << u;
+    // Columns of u = -1 to 3, in thirds: 2 1 0 | 0 1 2 | 2 1 0 | 0 1 2.
+    const int mirrored[] = {2, 1, 0, 0, 1, 2, 2, 1, 0, 0, 1, 2};
+    for (int i = 0; i < 12; ++i)
+        EXPECT_EQ(T::at(nearest, (i - 3 + 0.5) / 3, 0.25, 1, 1, mirror), T::rgb(mirrored[i], 0)) << i;
+    EXPECT_EQ(T::at(nearest, 1.1, 1.1, 1, 1, repeat, clamp), T::rgb(0, 1));
+    EXPECT_EQ(T::at(nearest, 1.1, 1.1, 1, 1, clamp, repeat), T::rgb(2, 0));
+    EXPECT_EQ(T::at(nearest, 0.9, 0.25, 2, 1, clamp), T::rgb(2, 0));  // after `repeat`
+    // Half a texel from an edge inward nothing of the other edge is blended in.
+    for (const TextureWrap wrap : {clamp, mirror}) {
+        EXPECT_EQ(T::at(bilinear, 0, 0, 1, 1, wrap, wrap), T::rgb(0, 0));
+        EXPECT_EQ(T::at(bilinear, 1, 1, 1, 1, wrap, wrap), T::rgb(2, 1));
+        EXPECT_EQ(T::at(bilinear, 0.05, 0.97, 1, 1, wrap, wrap), T::rgb(0, 1));
+    }
+}
+
 TYPED_TEST(TextureTest, AnyNumberStaysInsideThePicture) {
     using T = TestFixture;
     using Real = TypeParam;
@@ -76,6 +99,8 @@ TYPED_TEST(TextureTest, AnyNumberStaysInsideThePicture) {
             const Vec3<Real> found = T::at(TextureFilter::nearest, x, y);
             EXPECT_EQ(found.z, Real(1)) << x << " " << y;
             T::at(TextureFilter::bilinear, x, y);
+            for (const TextureWrap wrap : {TextureWrap::clamp, TextureWrap::mirror})
+                EXPECT_EQ(T::at(TextureFilter::nearest, x, y, 1, 1, wrap, wrap).z, Real(1)) << x << " " << y;
         }
     for (uint32_t n : {1u, 2u, 3u, 7u, 640u})
         for (int i = -2000; i <= 2000; ++i)

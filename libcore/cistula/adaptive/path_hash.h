@@ -23,13 +23,14 @@ struct PathHash {
 };
 
 /// Adds the texel at a hit to a hash.
-template <class Scene, class Real>
-CISTULA_INLINE void add_texel(PathHash& hash, const Scene& scene, const Hit<Real>& hit) {
+template <class Scene, class Real, class Media>
+CISTULA_INLINE void add_texel(PathHash& hash, const Scene& scene, const Ray<Real, Media>& ray, const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
     const int32_t texture = scene.materials[solid.material].texture;
     if (texture < 0) return;
     const Texture& of = scene.textures[uint32_t(texture)];
-    const Vec2<Real> texel = first_texel(of, texture_uv(scene, hit));
+    const Vec3<Real> normal = is_ball(solid) ? normal_at(scene, ray, hit) : Vec3<Real>(Real(0));
+    const Vec2<Real> texel = first_texel(of, texture_uv(scene, hit, normal));
     hash.add(bits_as<uint32_t>(float(texel.x)), bits_as<uint32_t>(float(texel.y)), solid.material);
 }
 
@@ -62,7 +63,7 @@ struct HashingIntersector {
             const uint64_t key = compiled_key(inner, hit.key);
             hash.add(uint32_t(key), uint32_t(key >> 32), compiled_number(inner, ray.from_solid) + 31 * ray.from_face);
         }
-        if (hash.counts && hit.found()) add_texel(hash, inner.scene, hit);
+        if (hash.counts && hit.found()) add_texel(hash, inner.scene, ray, hit);
         return hit;
     }
 

@@ -3,6 +3,7 @@
 // rounding says about its origin.
 #pragma once
 
+#include "cistula/geometry/ball.h"
 #include "cistula/geometry/convex_device.h"
 #include "cistula/geometry/convex_host.h"
 #include "cistula/geometry/shared_plane.h"
@@ -110,9 +111,14 @@ CISTULA_INLINE void closest_entry_beside(const Scene& scene, uint32_t index, uin
 }
 
 /// The ray's next crossing of a convex solid, if it is less than `best`.
-template <class Real, class Media, class Scene>
+template <class E = Effects<all_effects>, class Real, class Media, class Scene>
 CISTULA_HOST_NOINLINE void closest_convex(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                           Hit<Real>& best) {
+    if constexpr (meets_balls<E, Media>)
+        if (is_ball(scene.solids[index])) {
+            const bool inside = ray.media.contains(index);
+            return closest_ball(scene, index, ray, inside, !inside, best);
+        }
     if (ray.media.contains(index))
         closest_exit(scene, index, ray, best);
     else if (const uint32_t own_face = face_at_start(scene, index, ray); own_face != no_face)
@@ -131,11 +137,11 @@ CISTULA_INLINE uint32_t enclosing(const Scene& scene, const Ray<Real, Media>& ra
 }
 
 /// The next crossing of a ray for which enclosing() gives a solid; false for any other ray.
-template <class Real, class Media, class Scene>
+template <class E = Effects<all_effects>, class Real, class Media, class Scene>
 CISTULA_INLINE bool closest_enclosed(const Scene& scene, const Ray<Real, Media>& ray, Hit<Real>& best) {
     const uint32_t solid = enclosing(scene, ray);
     if (solid == no_solid) return false;
-    closest_convex(scene, solid, ray, best);
+    closest_convex<E>(scene, solid, ray, best);
     return true;
 }
 
@@ -148,6 +154,18 @@ CISTULA_HD inline bool inside_convex(const Scene& scene, const Solid& solid, con
         if (!(n > slab.low && n < slab.high)) return false;
     }
     return true;
+}
+
+/// Whether a camera is inside a convex solid. Of a ball, double decides.
+template <class Scene>
+CISTULA_HD inline bool is_in_convex(const Scene& scene, const Solid& solid, const Vec3<double>& camera) {
+    if constexpr (requires { scene.balls; })
+        if (is_ball(solid)) {
+            const auto& ball = scene.balls[solid.first_slab];
+            const Vec3<double> off = camera - Vec3<double>(ball.center);
+            return dot(off, off) < double(ball.radius) * double(ball.radius);
+        }
+    return inside_convex(scene, solid, Vec3<typename Scene::Scalar>(camera));
 }
 
 }  // namespace cistula

@@ -17,6 +17,7 @@ template <class Real>
 CISTULA_INLINE uint32_t plane_of_face(const SceneView<Real>& scene, uint32_t solid, uint32_t face) {
     if (scene.shared_planes.empty()) return no_plane;
     const Solid& s = scene.solids[solid];
+    if (is_ball(s)) return no_plane;
     return s.kind == SolidKind::convex ? scene.slab_planes[2 * s.first_slab + face] : scene.triangle_planes[face];
 }
 template <class Real>
@@ -31,11 +32,11 @@ CISTULA_INLINE void find_start_plane(const Scene& scene, Ray<Real, Media>& ray) 
         ray.from_plane = ray.from_solid == no_solid ? no_plane : plane_of_face(scene, ray.from_solid, ray.from_face);
 }
 
-/// The t at which a line crosses a shared plane, by the operations of cross_slab(), so that it has the bits of a slab's
-/// face there; `otherwise` for a line that is parallel to it.
-template <class Real>
-CISTULA_INLINE Real plane_time(const SharedPlane<ScalarOf<Real>>& plane, const Vec3<Real>& origin,
-                               const Vec3<Real>& direction, Real otherwise) {
+/// The t at which a line crosses a shared plane, or that of sheets near balls, by the operations of cross_slab(), so
+/// that it has the bits of a slab's face there; `otherwise` for a line that is parallel to it.
+template <class Real, class Plane>
+CISTULA_INLINE Real plane_time(const Plane& plane, const Vec3<Real>& origin, const Vec3<Real>& direction,
+                               Real otherwise) {
     const Vec3<Real> normal = spread<Real>(plane.normal);
     const Real nd = dot(normal, direction);
     const MaskOf<Real> parallel = magnitude(nd) < least_slope<ScalarOf<Real>>;

@@ -3,6 +3,7 @@
 // are hit exactly.
 #pragma once
 
+#include "cistula/geometry/ball.h"
 #include "cistula/geometry/shared_plane.h"
 
 namespace cistula {
@@ -307,10 +308,10 @@ CISTULA_INLINE MaskOf<Real> misses_flat_sheet(const Scene& scene, uint32_t clust
 template <class Real>
 inline constexpr Real contact_reach = Real(0x1p-12);
 
-/// The t of an accepted crossing: that of the shared plane on which the triangle lies, if any; -1 if the ray starts on
-/// that plane, whose surfaces it does not meet. `own`: the triangle's.
+/// The t of an accepted crossing of a triangle by its shared plane, if it has one; -1 if the ray starts on that plane,
+/// whose surfaces it does not meet. `own`: the triangle's.
 template <class Real, class Media, class Scene>
-CISTULA_INLINE Real crossing_time(const Scene& scene, uint32_t triangle, Real own, const Ray<Real, Media>& ray) {
+CISTULA_INLINE Real shared_time(const Scene& scene, uint32_t triangle, Real own, const Ray<Real, Media>& ray) {
     if constexpr (Media::contacts)
         if (!scene.triangle_planes.empty())
             if (const uint32_t plane = scene.triangle_planes[triangle]; plane != no_plane) {
@@ -323,13 +324,43 @@ CISTULA_INLINE Real crossing_time(const Scene& scene, uint32_t triangle, Real ow
     return own;
 }
 
+/// The t of an accepted crossing of a flat sheet near balls, that of its plane, by which rays from balls know their
+/// side of it. A ray that does so meets it if it heads across, not before its start; else t is -1. (In lanes no ray
+/// does: those are traced by themselves.)
+template <class Real, class Media, class Scene>
+CISTULA_INLINE Real time_near_ball(const Scene& scene, const Solid& sheet, const Real& own,
+                                   const Ray<Real, Media>& ray) {
+    const auto& plane = scene.ball_planes[sheet.first_group - 1];
+    Real t = own;
+    if (plane.shared == no_plane) {  // else it has the time of that
+        t = plane_time(plane, ray.origin, ray.direction, own);
+        t = select(magnitude(t - own) <= contact_reach<ScalarOf<Real>>, t, own);
+    }
+    if constexpr (!in_lanes<Real>)
+        if (const int side = BallSides::at_start(scene, ray).of(sheet.first_group - 1); side != 0)
+            return (side > 0) == (dot(plane.normal, ray.direction) > Real(0)) ? Real(-1) : max_or_second(t, Real(0));
+    return t;
+}
+
+/// The t of an accepted crossing of a solid's triangle, -1 if the ray does not meet it for where it starts. `own`: the
+/// triangle's.
+template <class Real, class Media, class Scene>
+CISTULA_INLINE Real crossing_time(const Scene& scene, uint32_t solid, uint32_t triangle, Real own,
+                                  const Ray<Real, Media>& ray) {
+    const Real t = shared_time(scene, triangle, own, ray);
+    if constexpr (Media::contacts)
+        if (!scene.ball_planes.empty() && is_sheet_near_ball(scene.solids[solid]))
+            return time_near_ball(scene, scene.solids[solid], t, ray);
+    return t;
+}
+
 /// Takes accepted crossings, where `active` holds, as `best` if they are the rays' next.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE void closest_crossing(const Scene& scene, const MaskOf<Real>& active, uint32_t solid, uint32_t triangle,
                                      uint32_t slot, const TriangleCrossing<Real>& c, const Ray<Real, Media>& ray,
                                      Hit<Real>& best) {
     const MaskOf<Real> own = ray.from_solid == solid;
-    const Real t = crossing_time(scene, triangle, c.t, ray);
+    const Real t = crossing_time(scene, solid, triangle, c.t, ray);
     const MaskOf<Real> meets = active & (t >= Real(0)) & !(own & (ray.from_face == triangle));
     if (!any(meets)) return;
     CrossingKind kind = CrossingKind::sheet;

@@ -125,15 +125,21 @@ CISTULA_INLINE MaskOf<Lanes<T, n>> resolve_event(const LaneScene<T>& scene,
         if (scene.meshes.any) strays = active & is_miscounted(ray, hit);
         if (scene.named) strays |= active & !event.fits;
     }
+    const auto gather = [&](const MaskOf<Lanes<T, n>>& several) {
+        for_each_lane(several, [&](int lane) {
+            if (!gather_in_lane(scene, ray, hit, lane, event)) strays |= MaskOf<Lanes<T, n>>::of_bits(1u << lane);
+        });
+    };
+    if constexpr (E::has(effect_spheres))
+        if (scene.kin.any)
+            gather(active & !strays & !is_kind(hit.key, CrossingKind::sheet) & among(scene.kin, key_solid(hit.key)));
     if constexpr (E::has(effect_contacts)) {
         using Index = IndexOf<Lanes<T, n>>;
         if (scene.shared_planes.empty()) return strays;
         const auto bodies = active & !strays & !is_kind(hit.key, CrossingKind::sheet);
         if (!any(bodies)) return strays;
         const Index planes = planes_of<Lanes<T, n>>(scene, key_solid(hit.key), key_face(hit.key));
-        for_each_lane(bodies & (planes != Index(ScalarOf<Index>(no_plane))), [&](int lane) {
-            if (!gather_in_lane(scene, ray, hit, lane, event)) strays |= MaskOf<Lanes<T, n>>::of_bits(1u << lane);
-        });
+        gather(bodies & (planes != Index(ScalarOf<Index>(no_plane))));
     }
     return strays;
 }
@@ -205,25 +211,48 @@ CISTULA_NOINLINE MaskOf<Lanes<T, n>> find_meshes_at_starts(const LaneScene<T>& s
     return found;
 }
 
-/// Hits of `active` from which new rays may have to count the meshes around them (count_meshes), or may be inside more
-/// solids than lanes can name, and perhaps others.
+/// Hits of `active` on balls from which new rays know more than lanes hold (BallStart).
+template <class T, int n>
+CISTULA_NOINLINE MaskOf<Lanes<T, n>> find_ball_starts(const LaneScene<T>& scene, const Vec3<Lanes<T, n>>& origin,
+                                                      const Vec3<Lanes<T, n>>& direction, const Hit<Lanes<T, n>>& hit,
+                                                      const MaskOf<Lanes<T, n>>& active) {
+    using Real = Lanes<T, n>;
+    MaskOf<Real> found = false;
+    const Vec3<Real> met = along(origin, hit.t, direction);
+    for_each_value(active, key_solid(hit.key), [&](uint32_t index, const MaskOf<Real>& same) {
+        const Solid& solid = scene.solids[index];
+        if (!is_ball(solid)) return;
+        const Ball<T>& ball = scene.balls[solid.first_slab];
+        if (ball.near_meshes != 0) found |= same;
+        for (uint32_t i = 0; i < ball.plane_count; ++i) {
+            const BallPlane<T>& plane = scene.ball_planes[scene.near_planes[ball.first_plane + i]];
+            const Real off = dot(spread<Real>(plane.normal), met) - Real(plane.offset);
+            found |= same & !(magnitude(off) > Real(2 * incidence<T> * scene.extent));  // the start is a little off
+        }
+    });
+    return found;
+}
+
+/// Hits of `active` from which new rays may have to count the meshes around them (count_meshes), know their sides of
+/// sheets at balls, or may be inside more solids than lanes can name, and perhaps others.
 template <class E, class T, int n>
 CISTULA_INLINE MaskOf<Lanes<T, n>> meshes_at_starts(const LaneScene<T>& scene,
                                                     const Ray<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& ray,
                                                     const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& active) {
+    MaskOf<Lanes<T, n>> found = false;
+    if constexpr (E::has(effect_spheres))
+        if (scene.has_ball_starts) found = find_ball_starts(scene, ray.origin, ray.direction, hit, active);
     if constexpr (E::has(effect_contacts))
         if (!scene.shared_planes.empty()) {
-            MaskOf<Lanes<T, n>> found = false;
             if (scene.meshes.any)
-                found =
+                found |=
                     find_meshes_at_starts(scene, along(ray.origin, hit.t, ray.direction), key_solid(hit.key), active);
             if (scene.named)  // of a ray inside several solids, starts may be inside too many
                 for_each_lane(active & !found & !ray.media.empty(), [&](int lane) {
                     if (ray.media.of(lane).count() > 1) found |= MaskOf<Lanes<T, n>>::of_bits(1u << lane);
                 });
-            return found;
         }
-    return false;
+    return found;
 }
 
 /// Corrects the start of a lane's ray (start_at_contact).

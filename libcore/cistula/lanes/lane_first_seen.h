@@ -33,7 +33,7 @@ struct LaneFirstSeen {
             if constexpr (layers) {
                 const auto material = uint32_t(s.material.number[lane]);
                 const bool textured = scene.materials[material].texture >= 0;
-                const Vec2<T> uv = textured ? texture_uv(scene, lane_of(hit, lane)) : Vec2<T>();
+                const Vec2<T> uv = textured ? texture_uv(scene, lane_of(hit, lane), met.normal) : Vec2<T>();
                 layered(lane).enter(number, lane_of(s.point, lane), one.t, uv, lane_of(s.color, lane), material + 1);
             }
         });

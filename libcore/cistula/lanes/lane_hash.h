@@ -71,7 +71,7 @@ struct HashingLanes {
         if (!inner.scene.textures.empty())
             for_each_lane(counts & found, [&](int lane) {
                 PathHash one;
-                add_texel(one, inner.scene, lane_of(hit, lane));
+                add_texel(one, inner.scene, lane_of<InteriorList>(ray, lane), lane_of(hit, lane));
                 hash.value.set(lane, T(uint32_t(hash.value[lane]) + one.value));
             });
         return hit;

@@ -108,6 +108,8 @@ struct LaneIntersector {
         const uint32_t index = next.index;
         Mask inside = false;
         if constexpr (E::has(effect_insides)) inside = active & ray.media.contains(index);
+        if constexpr (E::has(effect_spheres))
+            if (is_ball(next.solid)) return closest_ball(scene, index, ray, inside, free & !inside, best);
         const Mask near = free & (!inside) & !misses_bounds(next.sphere, ray.origin, ray.direction, best.t);
         const Mask on_plane = is_beside<E>(index, beside);
         const Mask outside = near & (!on_plane) & (ray.from_solid != int(index));
@@ -195,6 +197,8 @@ struct LaneIntersector {
             inside = active & contains;
             outside = !contains;
         }
+        if constexpr (E::has(effect_spheres))
+            if (is_ball(next.solid)) return shadow_ball<E>(scene, index, shadow, inside, active & outside, sum);
         const Mask on_plane = is_beside<E>(index, beside);
         Mask reaches = active & outside;
         if constexpr (!E::has(effect_contacts)) reaches &= ray.from_solid != int(index);

@@ -56,9 +56,10 @@ CISTULA_INLINE MaskOf<Real> near_edges(const Scene& scene, const Solid& solid, S
 template <class Real, class Media, class Scene>
 CISTULA_INLINE MaskOf<Real> may_hit_visible_lights(const Scene& scene, const Ray<Real, Media>& ray,
                                                    const MaskOf<Real>& active, const Real& from, const Real& to) {
-    if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return active;
+    if (scene.slab_groups.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return active;
     MaskOf<Real> may = false;
     for (const IndexedSolid<ScalarOf<Real>>& entry : scene.convex_copies) {
+        if (is_ball(entry.solid)) continue;
         const SlabGroup<ScalarOf<Real>>& group = scene.slab_groups[entry.solid.first_group];
         const Vec3<Real> to_center = spread<Real>(entry.sphere.center) - ray.origin;
         const Real ahead = dot(to_center, ray.direction);

@@ -23,6 +23,12 @@ struct PlaneBodies {
     CISTULA_INLINE uint32_t all() const { return above | below; }
 };
 
+/// What a solid is, in tables.
+enum SolidForm : int { form_triangles, form_slabs, form_ball };
+CISTULA_INLINE int form_of(const Solid& solid) {
+    return solid.kind != SolidKind::convex ? form_triangles : is_ball(solid) ? form_ball : form_slabs;
+}
+
 /// A table with an entry for each of the first 16 solids: a register holds those of float, two or four those of double.
 template <class T>
 struct alignas(64) SolidTable {
@@ -36,7 +42,7 @@ struct SolidTables {
     SolidTable<Real> color[3], ambient[3], specular[3], filter[3], tint[3];
     SolidTable<Real> diffuse, local, reflection, transmission;
     SolidTable<Integer> integer_exponent, fresnel, material, texture;
-    SolidTable<Integer> first_slab, is_convex;
+    SolidTable<Integer> first_slab, form;
 };
 
 /// Some of the solids of a LaneScene: a bit each of the first 31, and 1 for each that is among them.
@@ -139,11 +145,16 @@ struct LaneScene : SceneView<Real> {
     SolidSet meshes, isolated;        // closed meshes; convex solids near which nothing else is
     SolidSet transparent, absorbing;  // closed solids that light passes; in which it is absorbed
     SolidSet clear, transmitting;     // of all solids, those of a clear material; of one that transmits
+    SolidSet kin;                     // balls that coincide with others
     Span<uint32_t> numbers, places;   // the scene's own number of each solid, and the reverse
     Span<uint32_t> convex_places;     // of each convex solid, its place among them
     Span<PlaneBodies> plane_bodies;   // of each of shared_planes, if InteriorSets are bits
     bool has_opaque_fresnel = false;  // whether any opaque material is
+    bool has_ball_starts = false;     // whether meshes or flat sheets are near balls
     SolidTables<Real> tables;
+
+    /// Whether lanes may give rays back, to be traced by themselves.
+    CISTULA_INLINE bool may_stray() const { return meshes.any || named || has_ball_starts || kin.any; }
 };
 
 }  // namespace cistula

@@ -129,13 +129,18 @@ CISTULA_INLINE Vec3<Lanes<T, n>> off_triangle(const Scene& scene, uint32_t slot,
     return select(outside, start(apex[1]), start(apex[0]));
 }
 
-/// texture_uv(), where `active` holds; else 0.
+/// texture_uv(), where `active` holds; else 0. `balls`: where balls are hit.
 template <class T, int n, class Scene>
 CISTULA_INLINE Vec2<Lanes<T, n>> texture_uv(const Scene& scene, const Hit<Lanes<T, n>>& hit,
+                                            const Vec3<Lanes<T, n>>& normal, const MaskOf<Lanes<T, n>>& balls,
                                             const MaskOf<Lanes<T, n>>& active) {
     using Real = Lanes<T, n>;
     Vec2<Real> uv(Real(0));
-    for_each_value(active, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+    for_each_lane(active & balls, [&](int lane) {
+        const Vec2<T> one = texture_uv(scene, lane_of(hit, lane), lane_of(normal, lane));
+        for (int k = 0; k < 2; ++k) uv[k].set(lane, one[k]);
+    });
+    for_each_value(active & !balls, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
         const auto& cluster = scene.clusters[slot / cluster_lanes];
         const Solid& solid = scene.solids[cluster.solid];
         const Vec2<T>* of =
@@ -159,12 +164,10 @@ CISTULA_INLINE IndexOf<Lanes<T, n>> repeated(const Lanes<T, n>& i, uint32_t size
     return rests.all();
 }
 /// Texels in lanes.
-template <class T, int n>
-CISTULA_INLINE Vec3<Lanes<T, n>> texel_at(const Vec3<float>* texels, const Texture& texture, const Lanes<T, n>& i,
-                                          const Lanes<T, n>& j) {
-    const auto row = repeated(j, texture.height);
-    const auto column = repeated(i, texture.width);
-    return vectors_at<3>(&texels->x, row * IndexOf<Lanes<T, n>>(int(texture.width)) + column);
+template <class Real>
+requires in_lanes<Real> CISTULA_INLINE Vec3<Real> texel_at(const Vec3<float>* texels, const Texture& texture,
+                                                           const IndexOf<Real>& column, const IndexOf<Real>& row) {
+    return vectors_at<3>(&texels->x, row * IndexOf<Real>(int(texture.width)) + column);
 }
 
 /// Finds the surfaces of hits in the lanes of `active`; others hold arbitrary numbers, but the first material.
@@ -180,14 +183,14 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
     s.material.all = scene.materials.data;
     s.material.number = s.material.integer_exponent = 0;  // read in all lanes
     Index first_slab = 0;
-    Index is_convex = 0;
+    Index form = form_triangles;
     const auto take_all = [&](const Solid& solid, const auto& take) {
         const Material<T>& material = scene.materials[solid.material];
         s.material.template take_all<E>(take, scene.tables, material);
         take(s.material.number, scene.tables.material, int(solid.material));
         take(s.color, scene.tables.color, material.color);
         if constexpr (E::solids) {
-            take(is_convex, scene.tables.is_convex, int(solid.kind == SolidKind::convex));
+            take(form, scene.tables.form, form_of(solid));
             take(first_slab, scene.tables.first_slab, int(solid.first_slab));
         }
     };
@@ -202,7 +205,7 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
                     assign_where(same, to, To(value));
             });
         });
-    const MaskOf<Real> convex = active & (is_convex != 0);
+    const MaskOf<Real> convex = active & (form == Index(form_slabs));
     if (any(convex)) {
         const Vec3<Real> normal = vectors_at<sizeof(Slab<T>) / sizeof(T)>(&scene.slabs.data->normal.x,
                                                                           masked(convex, first_slab + (faces >> 1)));
@@ -210,23 +213,39 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
         const MaskOf<Real> outward = (high & hit.enters) | !(high | hit.enters);
         assign_where(convex, s.normal, select(outward, normal, -normal));
     }
+    MaskOf<Real> balls = false;
+    if constexpr (E::has(effect_spheres)) balls = active & (form == Index(form_ball));
+    if (any(balls)) {
+        constexpr int stride = sizeof(Ball<T>) / sizeof(T);
+        const Index places = masked(balls, first_slab);
+        const Vec3<Real> center = vectors_at<stride>(&scene.balls.data->center.x, places);
+        const Real radius = vectors_at<stride>(&scene.balls.data->center.y, places).z;  // it follows the center
+        const Vec3<Real> normal = ball_normal(center, ray, hit.t);
+        assign_where(balls, s.normal, select(hit.enters, normal, -normal));
+        assign_where(balls, s.point, along(center, radius, normal));
+        assign_where(balls, s.viewer_side, s.point);
+    }
     if constexpr (E::triangles) {
-        for_each_value(active & !convex, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+        for_each_value(active & !convex & !balls, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
             Vec3<T> corner[3];
             triangle_corners(scene, slot, corner);
             const Vec3<Real> first = spread<Real>(corner[0]);
             const Vec3<Real> point = along(along(first, hit.u, spread<Real>(corner[1] - corner[0])), hit.v,
                                            spread<Real>(corner[2] - corner[0]));
             const Vec3<Real> normal = spread<Real>(scene.sides[slot].normal);
-            assign_where(same, s.normal, select(hit.enters, normal, -normal));
+            const Vec3<Real> toward = select(hit.enters, normal, -normal);
+            assign_where(same, s.normal, toward);
             assign_where(same, s.point, point);
-            assign_where(same, s.viewer_side, off_triangle(scene, slot, hit.enters, point));
+            if (E::has(effect_spheres) && is_sheet_near_ball(scene.solids[scene.clusters[slot / cluster_lanes].solid]))
+                assign_where(same, s.viewer_side, off_sheet(scene.extent, ray, hit.t, toward));
+            else
+                assign_where(same, s.viewer_side, off_triangle(scene, slot, hit.enters, point));
         });
     }
     if constexpr (E::has(effect_texture)) {
         const MaskOf<Real> textured = active & !convex & (s.material.texture >= Index(0));
         for_each_value(textured, s.material.texture, [&](uint32_t texture, const MaskOf<Real>& same) {
-            const Vec2<Real> uv = texture_uv(scene, hit, same);
+            const Vec2<Real> uv = texture_uv(scene, hit, s.normal, balls, same);
             assign_where(same, s.color, s.color * texture_at(scene, scene.textures[texture], uv));
         });
     }

@@ -88,7 +88,7 @@ class LaneTile {
             if constexpr (by_sample) hash.begin(largest_component(branch.weight) >= least_weight(), adaptive_);
             find_start_plane<E>(scene_, branch.ray);
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
-            if (scene_.meshes.any || scene_.named) kept = branch;
+            if (scene_.may_stray()) kept = branch;
             const Mask single = tree.follow(branch, active, first);
             sums.end(active);
             if constexpr (by_sample) add_to_samples(branch, hash, sums.rays(), active, single);

@@ -66,7 +66,7 @@ CISTULA_INLINE void closest_mesh_crossing(const Scene& scene, const MaskOf<Real>
                                           uint32_t triangle, uint32_t slot, const TriangleCrossing<Real>& c,
                                           const Ray<Real, Media>& ray, Hit<Real>& best) {
     using Mask = MaskOf<Real>;
-    const Real t = crossing_time(scene, triangle, c.t, ray);
+    const Real t = crossing_time(scene, solid, triangle, c.t, ray);
     const Mask starts_there = (ray.from_solid == int(solid)) & (ray.from_face == int(triangle));
     const Mask enters = c.enters();
     const Mask is_inside = ray.media.contains(solid);

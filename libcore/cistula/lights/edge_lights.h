@@ -102,7 +102,7 @@ CISTULA_INLINE const Solid& listed(const Scene& scene, uint32_t index) {
 /// Whether a ray may meet a visible light between `from` and `to`, which are narrowed to where it may.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE bool may_hit_visible_lights(const Scene& scene, const Ray<Real, Media>& ray, Real& from, Real& to) {
-    if (scene.convex.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return true;
+    if (scene.slab_groups.empty() || scene.slab_groups[0].light_reach == RealTraits<Real>::infinity) return true;
     const Vec3<float> origin(ray.origin), direction(ray.direction);
     const auto near = [&](const Solid& solid, const SlabGroup<Real>& first, Real& near_from, Real& near_to) {
         float first_near = float(near_from);
@@ -114,7 +114,8 @@ CISTULA_INLINE bool may_hit_visible_lights(const Scene& scene, const Ray<Real, M
         return nears;
     };
     const bool ends = to < RealTraits<Real>::infinity;  // at a hit; inside a solid, at its exit or before
-    if (const uint32_t around = ends ? enclosing(scene, ray) : no_solid; around != no_solid) {
+    if (const uint32_t around = ends ? enclosing(scene, ray) : no_solid;
+        around != no_solid && !is_ball(scene.solids[around])) {
         const SlabGroup<Real>& first = scene.slab_groups[scene.solids[around].first_group];
         if (first.lights_apart) return near(scene.solids[around], first, from, to);
     }
@@ -122,6 +123,7 @@ CISTULA_INLINE bool may_hit_visible_lights(const Scene& scene, const Ray<Real, M
     Real latest = from;
     for (const auto& entry : scene.convex) {
         const Solid& solid = listed(scene, entry);
+        if (is_ball(solid)) continue;
         const SlabGroup<Real>& first = scene.slab_groups[solid.first_group];
         Real near_from = from;
         Real near_to = to;

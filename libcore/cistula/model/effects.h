@@ -26,9 +26,10 @@ enum Effect : uint32_t {
     effect_insides = 1u << 15,          // rays inside closed solids
     effect_lights_on_faces = 1u << 16,  // a point light lies on a face or an edge (docs/rules.md, 5)
     effect_contacts = 1u << 17,         // faces of several solids lie in one plane (docs/rules.md, 11)
-    effect_sky = 1u << 18,              // what rays meet that meet nothing depends on their direction
+    effect_spheres = 1u << 18,          // solid spheres (docs/rules.md, 14)
+    effect_sky = 1u << 19,              // what rays meet that meet nothing depends on their direction
 };
-inline constexpr int effect_count = 19;
+inline constexpr int effect_count = 20;
 inline constexpr uint32_t all_effects = (1u << effect_count) - 1;
 
 /// A bit of masks whose code also fills the layers of a film (layers.h). No scene calls for it.
@@ -38,10 +39,10 @@ inline constexpr uint32_t keeps_budget = 1u << (effect_count + 1);
 
 /// Effect names, in the order of the bits, as in --explain, --stats and the documentation.
 inline constexpr const char* effect_names[effect_count] = {
-    "texture",      "diffuse",    "specular",  "opaque-shadows", "transparent-shadows", "reflection",
-    "transmission", "refraction", "fresnel",   "absorption",     "visible-lights",      "light-falloff",
-    "tint",         "solids",     "triangles", "insides",        "lights-on-faces",     "contacts",
-    "sky"};
+    "texture",        "diffuse",         "specular",   "opaque-shadows", "transparent-shadows",
+    "reflection",     "transmission",    "refraction", "fresnel",        "absorption",
+    "visible-lights", "light-falloff",   "tint",       "solids",         "triangles",
+    "insides",        "lights-on-faces", "contacts",   "spheres",        "sky"};
 
 /// A set of effects as a type: `if constexpr (E::has(...))` removes the code of all others.
 template <uint32_t Mask>
@@ -49,9 +50,9 @@ struct Effects {
     static constexpr uint32_t mask = Mask;
     CISTULA_HD static constexpr bool has(uint32_t effects) { return (Mask & effects) != 0; }
 
-    /// Which kinds of primitives occur; a mask that names neither kind means both.
-    static constexpr bool solids = has(effect_solids) || !has(effect_triangles);
-    static constexpr bool triangles = has(effect_triangles) || !has(effect_solids);
+    /// Which kinds of primitives occur, convex solids and triangles; a mask that names no kind means both.
+    static constexpr bool solids = has(effect_solids | effect_spheres) || !has(effect_triangles);
+    static constexpr bool triangles = has(effect_triangles) || !has(effect_solids | effect_spheres);
 };
 
 /// Path throughput type: one value per channel, or a single one where no effect treats channels differently.
@@ -72,6 +73,7 @@ inline constexpr uint32_t effect_masks[] = {
     mirrors,
     clear_bodies,
     clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces,
+    all_effects & ~(effect_spheres | effect_sky),
     all_effects,
     all_effects | keeps_budget,
     all_effects | keeps_budget | fills_layers,
@@ -83,7 +85,7 @@ inline constexpr int limited_mask = compiled_mask_count - 2;
 inline constexpr int effect_mask_count = limited_mask;
 static_assert(effect_masks[effect_mask_count - 1] == all_effects);
 /// The first of the masks that the CPU's tiles in lanes are compiled for: on a CPU lesser ones are hardly quicker.
-inline constexpr int least_lane_mask = effect_mask_count - 3;
+inline constexpr int least_lane_mask = effect_mask_count - 4;
 
 /// The index in effect_masks of the smallest mask that contains `required`.
 constexpr int least_mask(uint32_t required) {

@@ -6,7 +6,7 @@
 namespace cistula {
 
 enum class SolidKind : uint32_t {
-    convex,  // slabs; no edges, nothing to leak
+    convex,  // slabs, or a ball; no edges, nothing to leak
     mesh,    // a closed triangle mesh, counter-clockwise seen from outside
     sheet,   // open triangles, seen from both sides, with no inside
 };
@@ -27,6 +27,28 @@ struct alignas(16) SharedPlane {
     Real slack;                         // s u M, the unit of all distances from it that count as none
     uint32_t first_solid, solid_count;  // the convex solids with a face on it: plane_solids[first_solid + i]
     uint32_t mesh_count;                // ... and the closed meshes, which follow them there
+};
+
+/// A ball, a solid sphere (docs/rules.md, 14). Those that coincide to within 16 u M are a family, of one center and
+/// radius.
+template <class Real>
+struct alignas(16) Ball {
+    Vec3<Real> center;
+    Real radius;
+    uint32_t family;       // the first ball of its family
+    uint32_t has_kin;      // 1 if others are in its family
+    uint32_t near_meshes;  // 1 if a closed mesh may touch its surface
+    uint32_t first_plane,
+        plane_count;       // the planes of flat sheets near it: near_planes[first_plane + i] of ball_planes
+    Vec3<double> axes[3];  // those of its longitudes and latitudes (texture_uv)
+};
+
+/// The plane of flat sheets near balls.
+template <class Real>
+struct alignas(16) BallPlane {
+    Vec3<Real> normal;  // unit
+    Real offset;        // normal.x on the plane
+    uint32_t shared;    // the same plane among shared_planes, or no_plane
 };
 
 inline constexpr int slab_lanes = 8;
@@ -50,17 +72,28 @@ struct alignas(16) Solid {
     float plane_offset;        // ... and normal.x on it
     SolidKind kind;
     uint32_t material;
-    uint32_t first_slab, slab_count;  // convex: its slabs
-    uint32_t first_group;             // convex: the same slabs, ceil(slab_count / 8) groups
-    uint32_t first_triangle;          // mesh, sheet: scene-wide number of its first triangle
-    uint32_t first_uv;                // textured: uvs[first_uv + 3 (triangle - first_triangle) + corner]
-    uint32_t flat;       // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
-                         // on it does not meet it again
-    uint32_t may_touch;  // convex, mesh: 1 if its padded box meets that of another such solid
-    uint32_t isolated;   // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
-                         // hits next is its own face
+    uint32_t first_slab, slab_count;  // convex: its slabs; a ball has none, and is balls[first_slab]
+    uint32_t first_group;     // convex: the same slabs, ceil(slab_count / 8) groups; flat sheet near a ball: 1 +
+                              // its plane in ball_planes; else 0
+    uint32_t first_triangle;  // mesh, sheet: scene-wide number of its first triangle
+    uint32_t first_uv;        // textured: uvs[first_uv + 3 (triangle - first_triangle) + corner]
+    uint32_t flat;            // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
+                              // on it does not meet it again
+    uint32_t may_touch;       // convex, mesh: 1 if its padded box meets that of another such solid
+    uint32_t isolated;        // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
+                              // hits next is its own face
     uint32_t first_near, near_count;  // the shared planes that reach it: near_planes[first_near + i]
 };
+
+/// Whether a convex solid is a ball.
+CISTULA_INLINE bool is_ball(const Solid& solid) {
+    return solid.kind == SolidKind::convex && solid.slab_count == 0;
+}
+
+/// Whether a solid is a flat sheet near balls.
+CISTULA_INLINE bool is_sheet_near_ball(const Solid& solid) {
+    return solid.kind == SolidKind::sheet && solid.first_group != 0;
+}
 
 /// The bounding sphere of a convex solid, or of a mesh on a shared plane.
 template <class Real>
@@ -185,14 +218,18 @@ struct VisibleLight {
     Vec3<Real> radiance;
 };
 
-enum class TextureFilter : uint32_t { nearest, bilinear };
+enum class TextureFilter : uint16_t { nearest, bilinear };
 
-/// A texture: linear RGB texels, row 0 at v = 0 (the top of the picture file), repeated infinitely.
+/// What lies beyond the edges of a texture along an axis: the texture again, its outermost texels, or its mirror image.
+enum class TextureWrap : uint8_t { repeat, clamp, mirror };
+
+/// A texture: linear RGB texels, row 0 at v = 0 (the top of the picture file), continued infinitely.
 struct Texture {
     uint32_t width, height;
     uint32_t first_texel;
     TextureFilter filter;
-    double repeat[2];  // factors of uv
+    TextureWrap wrap[2];  // along u, v
+    double repeat[2];     // factors of uv
 };
 
 enum class SkyKind : uint32_t { none, gradient, picture };
@@ -250,7 +287,9 @@ struct SceneView {
     Span<uint32_t> slab_planes;             // shared plane of each slab's low and high side, or no_plane
     Span<uint32_t> triangle_planes;         // ... of each triangle, by its scene-wide number
     Span<uint32_t> near_planes, plane_solids;
-    Span<uint32_t> convex;         // the convex solids; primitive p < convex.size is convex[p]
+    Span<Ball<Real>> balls;
+    Span<BallPlane<Real>> ball_planes;
+    Span<uint32_t> convex;         // the convex solids, balls too; primitive p < convex.size is convex[p]
     Span<Cluster<Real>> clusters;  // primitive p >= convex.size is clusters[p - convex.size]
     Span<Facet<Real>> facets;      // or, where there are any, facets[p - convex.size]
     Span<Vec2<Real>> uvs;

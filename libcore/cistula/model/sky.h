@@ -33,11 +33,8 @@ CISTULA_HD inline Vec3<double> picture_color(const Scene& scene, const Vec3<doub
     const double u = 0.5 - elementary::atan2(y, x) / (2 * pi);
     const double v = elementary::atan2(square_root(fused(x, x, y * y)), z) / pi;
     const Vec3<float>* texels = scene.texels.data + texture.first_texel;
-    const auto texel = [&](double i, double j) {
-        const uint32_t row = uint32_t(clamped(j, 0.0, double(texture.height - 1)));
-        return Vec3<double>(texels[row * texture.width + repeated(i, texture.width)]);
-    };
-    return bilinear(u * double(texture.width), v * double(texture.height), texel) * scene.sky.scale;
+    const auto texel = [&](uint32_t column, uint32_t row) { return texel_at<double>(texels, texture, column, row); };
+    return bilinear(texture, u * double(texture.width), v * double(texture.height), texel) * scene.sky.scale;
 }
 
 /// The radiance of a sky that a ray of this direction, of about unit length, ends on. (In lanes: lane_lights.h.)

@@ -1,4 +1,4 @@
-// Texture lookup: linear RGB texels, repeated infinitely.
+// Texture lookup: linear RGB texels, continued infinitely.
 #pragma once
 
 #include "cistula/model/scene_view.h"
@@ -27,15 +27,35 @@ CISTULA_INLINE uint32_t repeated(Real i, uint32_t n) {
     return (((n & (n - 1)) == 0) & (magnitude(i) < few)) ? uint32_t(int32_t(i)) & (n - 1) : any_remainder(i, n);
 }
 
-/// Bilinear interpolation between the four texels around (x, y); texel(i, j) gives a texel's color.
+/// The texel at an integer i of an axis that is clamped or mirrored, kept out of line.
+template <class Real>
+CISTULA_NOINLINE IndexOf<Real> wrapped_inward(Real i, uint32_t n, TextureWrap wrap) {
+    using T = ScalarOf<Real>;
+    using Index = IndexOf<Real>;
+    if (wrap == TextureWrap::clamp) return Index(whole_of(clamped(i, Real(0), Real(T(n - 1)))));
+    const Index place = repeated(i, 2 * n);
+    return select(place < Index(int(n)), place, Index(int(2 * n - 1)) - place);
+}
+
+/// The texel, from 0 to n - 1, at any integer i of an axis.
+template <class Real>
+CISTULA_INLINE IndexOf<Real> wrapped(const Real& i, uint32_t n, TextureWrap wrap) {
+    return wrap == TextureWrap::repeat ? repeated(i, n) : wrapped_inward(i, n, wrap);
+}
+
+/// Bilinear interpolation between the four texels around (x, y); texel(column, row) gives a texel's color.
 template <class Real, class Texel>
-CISTULA_NOINLINE Vec3<Real> bilinear(Real x, Real y, const Texel& texel) {
+CISTULA_NOINLINE Vec3<Real> bilinear(const Texture& texture, Real x, Real y, const Texel& texel) {
     const Real left = floor_of(x - Real(0.5));
     const Real top = floor_of(y - Real(0.5));
     const Real fx = (x - Real(0.5)) - left;
     const Real fy = (y - Real(0.5)) - top;
-    const Vec3<Real> upper = texel(left, top) * (Real(1) - fx) + texel(left + Real(1), top) * fx;
-    const Vec3<Real> lower = texel(left, top + Real(1)) * (Real(1) - fx) + texel(left + Real(1), top + Real(1)) * fx;
+    const IndexOf<Real> column[2] = {wrapped(left, texture.width, texture.wrap[0]),
+                                     wrapped(left + Real(1), texture.width, texture.wrap[0])};
+    const IndexOf<Real> row[2] = {wrapped(top, texture.height, texture.wrap[1]),
+                                  wrapped(top + Real(1), texture.height, texture.wrap[1])};
+    const Vec3<Real> upper = texel(column[0], row[0]) * (Real(1) - fx) + texel(column[1], row[0]) * fx;
+    const Vec3<Real> lower = texel(column[0], row[1]) * (Real(1) - fx) + texel(column[1], row[1]) * fx;
     return upper * (Real(1) - fy) + lower * fy;
 }
 
@@ -56,10 +76,10 @@ CISTULA_INLINE Vec2<Real> first_texel(const Texture& texture, const Vec2<Real>& 
     return {floor_of(place.x - offset), floor_of(place.y - offset)};
 }
 
-/// The texel in column i and row j, integers, of a texture's texels. (In lanes: lane_surface.h.)
+/// The texel at a column and a row of a texture's texels. (In lanes: lane_surface.h.)
 template <class Real>
-CISTULA_INLINE Vec3<Real> texel_at(const Vec3<float>* texels, const Texture& texture, Real i, Real j) {
-    return Vec3<Real>(texels[repeated(j, texture.height) * texture.width + repeated(i, texture.width)]);
+CISTULA_INLINE Vec3<Real> texel_at(const Vec3<float>* texels, const Texture& texture, uint32_t column, uint32_t row) {
+    return Vec3<Real>(texels[row * texture.width + column]);
 }
 
 /// The color of a texture at uv, the object's coordinates.
@@ -69,9 +89,13 @@ CISTULA_HD inline Vec3<Real> texture_at(const Scene& scene, const Texture& textu
     const Vec2<Real> place = in_texels(texture, uv);
     const Real x = place.x;
     const Real y = place.y;
-    const auto texel = [&](Real i, Real j) { return texel_at(texels, texture, i, j); };
-    if (texture.filter == TextureFilter::nearest) return texel(floor_of(x), floor_of(y));
-    return bilinear(x, y, texel);
+    const auto texel = [&](const IndexOf<Real>& column, const IndexOf<Real>& row) {
+        return texel_at<Real>(texels, texture, column, row);
+    };
+    if (texture.filter == TextureFilter::nearest)
+        return texel(wrapped(floor_of(x), texture.width, texture.wrap[0]),
+                     wrapped(floor_of(y), texture.height, texture.wrap[1]));
+    return bilinear(texture, x, y, texel);
 }
 
 }  // namespace cistula

@@ -1,6 +1,6 @@
-// Rays that start where bodies share a plane: on which side of every plane near the start, and inside which solids
-// (docs/rules.md, 11, lines 8 to 15). What the parent ray knows decides, not the rounded place of the start; of meshes,
-// what lies ahead of it.
+// Rays that start where bodies share a plane, or on balls: on which side of every plane near the start, and inside
+// which solids (docs/rules.md, 11, lines 8 to 15; 14, lines 12 to 14). What the parent ray knows decides, not the
+// rounded place of the start; of meshes, what lies ahead of it.
 #pragma once
 
 #include "cistula/geometry/shared_plane.h"
@@ -199,9 +199,11 @@ CISTULA_INLINE bool start_at_contact(const ConstantScene<Real>&, const Ray<Real,
 }
 
 /// Replaces the meshes in a ray's media by those that it leaves more often than it enters, ahead of its start
-/// (docs/rules.md, 11, line 15). Not inlined: only rays near meshes at contacts need it.
+/// (docs/rules.md, 11, line 15); `all`: also by those that it enters more often, and the ray then takes their crossings
+/// from either side. Not inlined: only rays near meshes at contacts and balls need it.
 template <class Real, class Media, FindsHits<Real, Media> Intersector, class Scene>
-CISTULA_NOINLINE void count_meshes(const Scene& scene, const Intersector& intersector, Ray<Real, Media>& ray) {
+CISTULA_NOINLINE void count_meshes(const Scene& scene, const Intersector& intersector, Ray<Real, Media>& ray,
+                                   bool all = false) {
     Media ahead;
     Ray<Real, Media> probe = ray;
     probe.accept_both_sides();
@@ -219,9 +221,65 @@ CISTULA_NOINLINE void count_meshes(const Scene& scene, const Intersector& inters
         if (scene.solids[solid].kind == SolidKind::mesh) counted.add(solid, -count);
     });
     ahead.for_each([&](uint32_t solid, int count) {
-        if (count > 0) counted.add(solid, count);
+        if (count > 0 || all) counted.add(solid, count);
     });
     ray.media = counted;
+    if (all) ray.accept_both_sides();
+}
+
+/// What rays that start on a ball know beside the solids around them.
+struct BallStart {
+    BallSides sides;
+    bool near_meshes = false;
+
+    /// Sets up a ray that starts there, which must be complete otherwise.
+    template <class Real, class Media, class Intersector, class Scene>
+    CISTULA_INLINE void begin(const Scene& scene, const Intersector& intersector, Ray<Real, Media>& ray) const {
+        if (sides.bits != 0) ray.from_face = sides.bits;
+        if (near_meshes) count_meshes(scene, intersector, ray, true);
+    }
+};
+
+/// The side of a flat sheet's plane on which rays from a ball start, for a start within rounding of the plane: that of
+/// the parent ray at the hit.
+template <class Real, class Media>
+CISTULA_HD inline bool is_above(const SceneView<Real>& scene, uint32_t number, Real off, const Ray<Real, Media>& parent,
+                                Real t) {
+    const BallPlane<Real>& plane = scene.ball_planes[number];
+    const Real slope = dot(plane.normal, parent.direction);
+    if (magnitude(slope) < least_slope<Real>) return off > Real(0);
+    const bool rises = slope > Real(0);
+    const bool from_sheet = parent.from_solid != no_solid && is_sheet_near_ball(scene.solids[parent.from_solid]) &&
+                            scene.solids[parent.from_solid].first_group == number + 1;
+    if (from_sheet || (plane.shared != no_plane && parent.from_plane == plane.shared)) return rises;
+    const Real at = plane_time(plane, parent.origin, parent.direction, Real(0));
+    if (const int side = BallSides::at_start(scene, parent).of(number); side != 0)
+        return (side > 0) != ((side > 0) != rises && max_or_second(at, parent.after.t) <= t);
+    return (at <= t) == rises;
+}
+
+/// What rays from `start`, where a ray hits a ball, know beside the solids around them.
+template <class Real, class Media>
+CISTULA_NOINLINE BallStart known_at_start(const SceneView<Real>& scene, const Ball<Real>& ball,
+                                          const Ray<Real, Media>& parent, Real t, Vec3<Real> start) {
+    BallStart known{{}, ball.near_meshes != 0};
+    for (uint32_t i = 0; i < ball.plane_count; ++i) {
+        const uint32_t plane = scene.near_planes[ball.first_plane + i];
+        const Real off = dot(scene.ball_planes[plane].normal, start) - scene.ball_planes[plane].offset;
+        if (!(magnitude(off) > incidence<Real> * scene.extent))
+            known.sides.add(plane, is_above(scene, plane, off, parent, t));
+    }
+    return known;
+}
+/// What rays from a hit know, if it is one on a ball.
+template <class Real, class Media>
+CISTULA_INLINE BallStart ball_start(const SceneView<Real>& scene, const Ray<Real, Media>& parent, const Hit<Real>& hit,
+                                    const Vec3<Real>& start) {
+    const Solid& solid = scene.solids[key_solid(hit.key)];
+    if (!is_ball(solid)) return {};
+    const Ball<Real>& ball = scene.balls[solid.first_slab];
+    return ball.plane_count == 0 && ball.near_meshes == 0 ? BallStart()
+                                                          : known_at_start(scene, ball, parent, hit.t, start);
 }
 
 }  // namespace cistula

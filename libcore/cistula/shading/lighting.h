@@ -106,6 +106,9 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             meshes = start_at_contact(scene, ray, event, s.normal, false, s.viewer_side, corrected);
             around = &corrected;
         }
+    [[maybe_unused]] BallStart from_ball;
+    if constexpr (meets_balls<E, Media> && !in_lanes<Real>)
+        from_ball = ball_start(scene, ray, event.hit, s.viewer_side);
     const auto& m = material_of(scene, s);
     sums.add(weight * (s.color * m.ambient), LightSource::ambient, active);
     if constexpr (E::has(effect_diffuse | effect_specular)) {
@@ -133,6 +136,7 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             find_start_plane<E>(scene, shadow.ray);
             if constexpr (meets_contacts<E, Media> && !in_lanes<Real>)
                 if (meshes) count_meshes(scene, intersector, shadow.ray);
+            if constexpr (meets_balls<E, Media> && !in_lanes<Real>) from_ball.begin(scene, intersector, shadow.ray);
             rays.add_shadow(lights);
             if constexpr (in_lanes<Real>)
                 arrives = intersector.template transmittance<E>(shadow, lights);

@@ -189,9 +189,40 @@ CISTULA_INLINE void shadow_entry_beside(const Scene& scene, uint32_t index, uint
     }
 }
 
+/// Adds what a ball takes from the light of rays that start inside it, and of others outside (docs/rules.md, 14, line
+/// 10). No light lies on it, so that rounding does not decide whether one is inside.
+template <class E, class Real, class Media, class Scene>
+CISTULA_INLINE void shadow_ball(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
+                                const MaskOf<Real>& inside, const MaskOf<Real>& outside, ShadowSumOf<E, Real>& sum) {
+    using T = ScalarOf<Real>;
+    const Solid& solid = scene.solids[index];
+    const Ball<T>& ball = scene.balls[solid.first_slab];
+    const Ray<Real, Media>& ray = shadow.ray;
+    const BallChord<Real> chord = BallChord<Real>::of(ball, ray.origin, ray.direction);
+    const Real beyond = shadow.distance - chord.middle;
+    const MaskOf<Real> lit_inside = beyond * beyond < chord.square;
+    MaskOf<Real> enters = outside & (lit_inside | (chord.is_ahead & (beyond > Real(0))));
+    if (!any(inside | enters)) return;
+    const MaskOf<Real> on = starts_on_ball(scene, index, ball, ray);
+    enters = enters & !on;
+    const Real far = select(inside & on, Real(2) * chord.middle, chord.middle + chord.half);
+    const Real leave = select(lit_inside, shadow.distance, clamped(far, Real(0), shadow.distance));
+    const Real enter = clamped(select(inside, Real(0), chord.middle - chord.half), Real(0), shadow.distance);
+    const Material<T>& material = scene.materials[solid.material];
+    sum.cross(material, enters);
+    sum.cross(material, (inside | enters) & !lit_inside);
+    if constexpr (E::has(effect_absorption))
+        sum.absorb(material, max_or_second(leave - enter, Real(0)), inside | enters);
+}
+
 template <class Real, class E, class Media, class Scene>
 CISTULA_HOST_NOINLINE void shadow_convex(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                          ShadowSum<E>& sum) {
+    if constexpr (meets_balls<E, Media>)
+        if (is_ball(scene.solids[index])) {
+            const bool inside = shadow.ray.media.contains(index);
+            return shadow_ball<E>(scene, index, shadow, inside, !inside, sum);
+        }
     if (shadow.ray.media.contains(index))
         shadow_exit<Real, E>(scene, index, shadow, sum);
     else if (const uint32_t own_face = face_at_start(scene, index, shadow.ray); own_face != no_face)
@@ -217,7 +248,7 @@ template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_crossing(const Scene& scene, const MaskOf<Real>& active, uint32_t index, uint32_t triangle,
                                     const TriangleCrossing<Real>& c, const ShadowRay<Real, Media>& shadow,
                                     ShadowSumOf<E, Real>& sum) {
-    const Real t = crossing_time(scene, triangle, c.t, shadow.ray);
+    const Real t = crossing_time(scene, index, triangle, c.t, shadow.ray);
     const MaskOf<Real> own = (shadow.ray.from_solid == index) & (shadow.ray.from_face == triangle);
     const MaskOf<Real> before = active & (t >= Real(0)) & (t < shadow.distance) & !own;
     if (!any(before)) return;

@@ -1,10 +1,10 @@
 // The surface at a hit, computed from the hit's ids rather than from the ray where that is more accurate.
 #pragma once
 
-#include "cistula/geometry/ray.h"
-#include "cistula/model/effects.h"
+#include "cistula/geometry/ball.h"
 #include "cistula/model/scene_access.h"
 #include "cistula/model/texture.h"
+#include "cistula/numerics/trigonometry.h"
 
 namespace cistula {
 
@@ -50,10 +50,16 @@ CISTULA_INLINE Vec3<Real> far_side(const Scene& scene, const Hit<Real>& hit, con
 }
 
 /// The unit normal on the viewer's side.
-template <class E = Effects<all_effects>, class Real, class Scene>
-CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
+template <class E = Effects<all_effects>, class Real, class Media, class Scene>
+CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, [[maybe_unused]] const Ray<Real, Media>& ray,
+                                    const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
     const uint32_t face = key_face(hit.key);
+    if constexpr (meets_balls<E, Media>)
+        if (is_ball(solid)) {
+            const Vec3<Real> normal = ball_normal(scene.balls[solid.first_slab].center, ray, hit.t);
+            return hit.enters ? normal : -normal;
+        }
     if (is_convex<E>(solid)) {
         const Vec3<Real>& normal = scene.slabs[solid.first_slab + face / 2].normal;
         const bool outward = (face & 1u) != 0;  // the high side's outward normal is the slab's
@@ -68,10 +74,36 @@ CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, const Hit<Real>& hit) {
     }
 }
 
-/// The texture coordinates of a hit on a triangle that has them.
+/// The origin of rays that leave a flat sheet near balls where a ray meets it at t: straight off that place, which the
+/// order of crossings speaks of. (A step toward an apex goes up to 2^9 u M sideways, into a ball or out of it, and for
+/// a grazing ray a place from the triangle's corners lies far from t.)
+template <class Real, class Media>
+CISTULA_INLINE Vec3<Real> off_sheet(ScalarOf<Real> extent, const Ray<Real, Media>& ray, const Real& t,
+                                    const Vec3<Real>& normal) {
+    return along(along(ray.origin, t, ray.direction), Real(8 * RealTraits<ScalarOf<Real>>::unit * extent), normal);
+}
+
+/// The texture coordinates of a ball by its outward normal: longitude from -x over -y, x and y, and the angle to the
+/// pole, each from 0 to 1.
+template <class Real>
+CISTULA_NOINLINE Vec2<Real> ball_uv(const Ball<Real>& ball, Vec3<Real> normal) {
+    constexpr double pi = 0x1.921fb54442d18p+1;
+    const Vec3<double> n(normal);
+    const double x = dot(ball.axes[0], n);
+    const double y = dot(ball.axes[1], n);
+    const double z = dot(ball.axes[2], n);
+    return {Real(elementary::atan2(y, x) / (2 * pi) + 0.5),
+            Real(elementary::atan2(square_root(x * x + y * y), z) / pi)};
+}
+
+/// The texture coordinates of a hit on a ball, or on a triangle that has them. `normal`: of the surface, toward the
+/// viewer; used for a ball.
 template <class Real, class Scene>
-CISTULA_INLINE Vec2<Real> texture_uv(const Scene& scene, const Hit<Real>& hit) {
+CISTULA_INLINE Vec2<Real> texture_uv(const Scene& scene, const Hit<Real>& hit,
+                                     [[maybe_unused]] const Vec3<Real>& normal) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
+    if constexpr (requires { scene.balls; })
+        if (is_ball(solid)) return ball_uv(scene.balls[solid.first_slab], hit.enters ? normal : -normal);
     const Vec2<Real>* uv = scene.uvs.data + solid.first_uv + 3 * (key_face(hit.key) - solid.first_triangle);
     return uv[0] * (Real(1) - hit.u - hit.v) + uv[1] * hit.u + uv[2] * hit.v;
 }
@@ -83,7 +115,17 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
     s.material = solid.material;
     const Material<Real>& material = scene.materials[s.material];
     s.color = material.color;
-    s.normal = normal_at<E>(scene, hit);
+    s.normal = normal_at<E>(scene, ray, hit);
+    if constexpr (meets_balls<E, Media>)
+        if (is_ball(solid)) {
+            const Ball<Real>& ball = scene.balls[solid.first_slab];
+            s.point = s.viewer_side = along(ball.center, ball.radius, hit.enters ? s.normal : -s.normal);
+            if constexpr (E::has(effect_texture))
+                if (material.texture >= 0)
+                    s.color *=
+                        texture_at(scene, scene.textures[uint32_t(material.texture)], texture_uv(scene, hit, s.normal));
+            return s;
+        }
     if (is_convex<E>(solid)) {
         const Vec3<Real> point = along(ray.origin, hit.t, ray.direction);
         s.point = Vec3<Real>(point.x, point.y, point.z);  // number by number, as in WaitingBranch
@@ -95,10 +137,12 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
         triangle_corners(scene, hit.slot, corner);
         s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
         s.viewer_side = apex_at(scene, hit.slot, corner, s.normal, hit.enters).from(s.point);
+        if constexpr (meets_balls<E, Media>)
+            if (is_sheet_near_ball(solid)) s.viewer_side = off_sheet(scene.extent, ray, hit.t, s.normal);
     }
     if constexpr (E::has(effect_texture)) {
         if (material.texture >= 0) {
-            s.color *= texture_at(scene, scene.textures[uint32_t(material.texture)], texture_uv(scene, hit));
+            s.color *= texture_at(scene, scene.textures[uint32_t(material.texture)], texture_uv(scene, hit, s.normal));
         }
     }
     return s;

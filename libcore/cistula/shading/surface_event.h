@@ -105,8 +105,15 @@ CISTULA_INLINE void resolve_event(const Scene& scene, const Intersector& interse
                                   const Hit<Real>& hit, SurfaceEvent<Real, Media>& event) {
     event.begin(ray, hit);
     if constexpr (meets_contacts<E, Media>) {
-        if (scene.shared_planes.empty() || key_kind(hit.key) == CrossingKind::sheet) return;
+        if (key_kind(hit.key) == CrossingKind::sheet) return;
         const uint32_t solid = key_solid(hit.key);
+        if constexpr (meets_balls<E, Media>)
+            if (is_ball(scene.solids[solid])) {
+                if (scene.balls[scene.solids[solid].first_slab].has_kin != 0)
+                    gather_shared(scene, intersector, ray, event);
+                return;
+            }
+        if (scene.shared_planes.empty()) return;
         if (plane_of_face(scene, solid, key_face(hit.key)) != no_plane)
             gather_shared(scene, intersector, ray, event);
         else  // neither: one of the two crossings of a grazed edge, in the wrong order

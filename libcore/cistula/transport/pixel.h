@@ -124,14 +124,13 @@ CISTULA_HD inline bool camera_meshes(const Scene& scene, const Intersector& inte
 template <class Scene, class Intersector>
 CISTULA_HD inline bool camera_solids(const Scene& scene, const Intersector& intersector, const Vec3<double>& point,
                                      InteriorList& media) {
-    using Real = typename Scene::Scalar;
     media = InteriorList();
     if (is_far(point, double(scene.extent))) return true;
     bool fits = true;
     bool meshes = false;
     for (uint32_t i = 0; i < scene.solids.size; ++i) {
         meshes |= scene.solids[i].kind == SolidKind::mesh;
-        if (scene.solids[i].kind == SolidKind::convex && inside_convex(scene, scene.solids[i], Vec3<Real>(point)))
+        if (scene.solids[i].kind == SolidKind::convex && is_in_convex(scene, scene.solids[i], point))
             fits &= media.add(i, 1);
     }
     if constexpr (Intersector::Media::meshes)
@@ -191,7 +190,7 @@ struct LayeredFirstSeen {
         seen.surface(hit, surface);
         const uint32_t solid = key_solid(hit.key);
         const bool textured = scene.materials[surface.material].texture >= 0;
-        const Vec2<Real> uv = textured ? texture_uv(scene, hit) : Vec2<Real>();
+        const Vec2<Real> uv = textured ? texture_uv(scene, hit, surface.normal) : Vec2<Real>();
         enter(solid, surface.point, hit.t, uv, surface.color, surface.material + 1);
     }
     template <class Media>

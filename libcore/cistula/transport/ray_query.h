@@ -79,7 +79,7 @@ CISTULA_HD inline RayAnswer answer_of(const Scene& scene, const Ray<Real>& ray, 
     answer.t = start + double(hit.t);
     answer.point = Vec3<double>(s.point);
     answer.normal = Vec3<double>(s.normal);
-    if (scene.materials[s.material].texture >= 0) answer.uv = Vec2<double>(texture_uv(scene, hit));
+    if (scene.materials[s.material].texture >= 0) answer.uv = Vec2<double>(texture_uv(scene, hit, s.normal));
     answer.solid = key_solid(hit.key);
     answer.face = key_face(hit.key) - (solid.kind == SolidKind::convex ? 0 : solid.first_triangle);
     answer.material = s.material;

@@ -275,7 +275,7 @@ class RayTree {
         return child;
     }
 
-    /// Corrects a new ray that may start near a shared plane.
+    /// Corrects a new ray that may start near a shared plane or on a ball.
     CISTULA_INLINE void correct_start(Ray<Real, Media>& ray, const Ray<Real, Media>& parent,
                                       const SurfaceEvent<Real, Media>& event, const Surface<Real>& s,
                                       bool beyond) const {
@@ -285,6 +285,8 @@ class RayTree {
                 find_start_plane<E>(scene_, ray);
                 count_meshes(scene_, intersector_, ray);
             }
+        if constexpr (meets_balls<E, Media>)
+            ball_start(scene_, parent, event.hit, ray.origin).begin(scene_, intersector_, ray);
     }
 
     const Scene& scene_;

@@ -17,7 +17,7 @@ template <class E = Effects<all_effects>, class Real, class Media, class Scene>
 CISTULA_INLINE void closest_primitive(const Scene& scene, uint32_t primitive, const Ray<Real, Media>& ray,
                                       const TriangleRay<Real>& triangle_ray, Hit<Real>& best) {
     if (is_solid<E>(scene, primitive))
-        closest_convex(scene, scene.convex[primitive], ray, best);
+        closest_convex<E>(scene, scene.convex[primitive], ray, best);
     else
         closest_cluster(scene, primitive - scene.convex.size, ray, triangle_ray, best);
 }
@@ -101,8 +101,8 @@ struct BruteIntersector {
     template <class E>
     CISTULA_INLINE bool closest_solid(const Ray<Real, Media>& ray, Hit<Real>& best) const {
         if constexpr (Media::contacts) {
-            if (closest_enclosed(scene, ray, best)) return true;
-            for (const uint32_t index : scene.convex) closest_convex(scene, index, ray, best);
+            if (closest_enclosed<E>(scene, ray, best)) return true;
+            for (const uint32_t index : scene.convex) closest_convex<E>(scene, index, ray, best);
         } else {
             const uint32_t around = E::has(effect_insides) ? ray.media.only() : no_solid;
             if constexpr (E::has(effect_insides)) {

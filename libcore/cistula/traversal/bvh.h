@@ -105,7 +105,7 @@ struct BvhIntersector {
     template <class E = Effects<all_effects>>
     CISTULA_INLINE Hit<Real> closest(const Ray<Real, Media>& ray) const {
         Hit<Real> best;
-        if (!is_finite(ray) || (E::has(effect_insides) && closest_enclosed(scene, ray, best))) return best;
+        if (!is_finite(ray) || (E::has(effect_insides) && closest_enclosed<E>(scene, ray, best))) return best;
         const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
         BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
         box_ray.near_limit = tree_near(ray.after.t);

@@ -224,6 +224,12 @@ std::optional<double> Comparison::least_ssim() const {
     return least;
 }
 
+bool compares_values(const StoredFile& a, const StoredFile& b, const Selection& selection) {
+    const PicturePairs pairs = pair_pictures(a, b);
+    return selection.excuses_windows() || std::any_of(pairs.pairs.begin(), pairs.pairs.end(),
+                                                      [](const auto& pair) { return pair.a->data == pair.b->data; });
+}
+
 Comparison compare_files(const StoredFile& a, const StoredFile& b, const Thresholds& thresholds,
                          const Selection& selection, StopSignal stop) {
     return Comparer(a, b, selection, thresholds).compare(stop);

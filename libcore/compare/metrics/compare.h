@@ -45,6 +45,9 @@ struct Comparison {
     std::optional<double> least_ssim() const;  // of the channels that have one
 };
 
+/// Whether values of two files can count: some windows are the same, or may differ.
+bool compares_values(const StoredFile& a, const StoredFile& b, const Selection& selection);
+
 /// Parts are matched by their names where all have one, else by their order. Metrics that the selection or a threshold
 /// asks for are taken. Throws Error: `usage` for a selection that fits neither file, `interrupted`.
 Comparison compare_files(const StoredFile& a, const StoredFile& b, const Thresholds& thresholds,

@@ -27,9 +27,6 @@ std::string figure(const std::string& content, const std::string& caption, const
 /// A command line that a click selects as a whole.
 std::string command_html(const std::string& command);
 
-/// Bytes as the text of a data: address.
-std::string base64(const std::string& bytes);
-
 /// The style of all pages: light and dark, wide and narrow.
 extern const char* const page_style;
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/file_bytes.h"
 #include "compare/page/page_parts.h"
 #include "compare/suite/suite_pixels.h"
 #include "image/picture/picture_io.h"

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "image/picture/picture.h"
 
 namespace cistula {
@@ -21,13 +22,15 @@ inline constexpr std::string_view exr_magic = "\x76\x2f\x31\x01";
 /// the number of threads: those of TBB for zip and zips, for others OpenEXR's, `most_threads` at most. Half channels
 /// round to nearest even. Attributes: string, int, double, 16 floats -> m44f, 8 floats named "chromaticities" ->
 /// chromaticities (red, green, blue, white xy), other lengths -> floatvector, Ratio -> rational; "screenWindowWidth" ->
-/// float. Throws Error (file) if it cannot be written, std::invalid_argument if the picture is inconsistent or
-/// an attribute has a name that OpenEXR reserves
+/// float. Throws Error: `file` if it cannot be written, `interrupted` if it is not done half a second after `stop` was
+/// given; std::invalid_argument if the picture is inconsistent or an attribute has a name that OpenEXR reserves
 /// ("compression", "version", ...).
-void write_exr(const std::string& path, const LayeredPicture& picture, int most_threads = INT_MAX);
+void write_exr(const std::string& path, const LayeredPicture& picture, int most_threads = INT_MAX,
+               StopSignal stop = {});
 
 /// Writes a file of several parts, or of one as above; their names and attributes are in their own headers.
-void write_exr(const std::string& path, const std::vector<PicturePart>& parts, int most_threads = INT_MAX);
+void write_exr(const std::string& path, const std::vector<PicturePart>& parts, int most_threads = INT_MAX,
+               StopSignal stop = {});
 
 /// Sets the number of OpenEXR's threads, which belong to the whole process: for programs, never called by libraries. 0,
 /// the default: each caller of write_exr compresses by itself. Not while a file is written or read.
@@ -40,8 +43,11 @@ LayeredPicture read_exr(const std::string& path);
 /// Reads files of one or several parts, in the order of the file.
 std::vector<PicturePart> read_exr_parts(const std::string& path);
 
-/// True for an OpenEXR file in which every chunk of pixels is present; false for anything else, also if there is no
-/// file.
+/// Reads what the headers of files say: parts without values.
+std::vector<PicturePart> read_exr_headers(const std::string& path);
+
+/// True for an OpenEXR file in which every chunk of pixels is present, and where these are lines, nothing else; false
+/// for anything else, also if there is no file.
 bool exr_is_complete(const std::string& path);
 
 /// Why a picture of a width and a height is refused; empty if it is not.

@@ -200,28 +200,30 @@ void limit_sizes() {
 
 }  // namespace
 
-void check_exr_header(const std::string& path) {
+int64_t check_exr_header(const std::string& path) {
     HeaderBytes bytes(path);
-    if (bytes.number() != magic) return;
+    if (bytes.number() != magic) return 0;
     const bool has_parts = (bytes.number() & several_parts) != 0;
     do {
-        if (!HeaderCheck(bytes).run()) return;
-        if (!has_parts) return;
+        if (!HeaderCheck(bytes).run()) return 0;
         const int64_t place = bytes.place();
+        if (!has_parts) return place;
         const std::optional<std::string> next = bytes.name();
-        if (!next || next->empty()) return;  // an empty header ends the list
+        if (!next) return 0;
+        if (next->empty()) return place + 1;  // an empty header ends the list
         bytes.go_to(place);
     } while (!bytes.fails());
+    return 0;
 }
 
-void check_before_opening(const std::string& path) {
+int64_t check_before_opening(const std::string& path) {
     limit_sizes();
-    check_exr_header(path);
+    return check_exr_header(path);
 }
 
 void check_claim(const Imf::Header& header, const std::string& path) {
     // Deflate packs 1,032 to 1 at most, RLE and PIZ less; DWA does so after it took one value in 64.
-    double packing = 2048;
+    double packing = 1032;
     if (header.compression() == Imf::NO_COMPRESSION) packing = 1;
     if (header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION)
         packing = 64 * 1032;

@@ -4,6 +4,7 @@
 #include <OpenEXR/ImfForward.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <exception>
 #include <new>
 #include <string>
@@ -36,13 +37,14 @@ auto with_file_errors(const std::string& path, Read read) {
 }
 
 /// What has to be done before the library opens a file, so that a damaged header cannot make it allocate huge arrays:
-/// its limits are set, and check_exr_header.
-void check_before_opening(const std::string& path);
+/// its limits are set, and check_exr_header, whose number it returns.
+int64_t check_before_opening(const std::string& path);
 
 /// Throws std::runtime_error for a header that says more than the file's bytes can hold: the OpenEXR library takes the
 /// memory for attributes and tables of chunks before it reads them. Says nothing of files that are no EXR or whose
-/// header ends early, which the library refuses by itself. Layout: "OpenEXR File Layout", openexr.com.
-void check_exr_header(const std::string& path);
+/// header ends early, which the library refuses by itself. Returns the bytes of all headers, 0 for these. Layout:
+/// "OpenEXR File Layout", openexr.com.
+int64_t check_exr_header(const std::string& path);
 
 /// Throws for a header that says more pixels than a file of its size can hold, before memory is taken for them.
 void check_claim(const Imf::Header& header, const std::string& path);

@@ -100,21 +100,32 @@ int lines_per_chunk(Imf::Compression compression) {
     }
 }
 
+/// The chunks of a part of lines.
+int64_t chunks_of(const Imf::Header& header) {
+    const int64_t lines = int64_t{header.dataWindow().max.y} - header.dataWindow().min.y + 1;
+    const int step = lines_per_chunk(header.compression());
+    return (lines + step - 1) / step;
+}
+
 /// Throws unless every chunk is present. The table of offsets is not enough: it precedes the pixels, so a truncated
-/// file has all of it. Tiles are checked when their pixels are read.
+/// file has all of it. Returns the bytes of chunks of lines and of their table, in a file of one part. Tiles are
+/// checked when their pixels are read.
 template <class File>
-void check_chunks(File& file) {
+int64_t check_chunks(File& file) {
+    int64_t bytes = 0;
     if (!file.isComplete()) throw std::runtime_error("the file is not complete: chunks of pixels are missing");
     if constexpr (!std::is_same_v<File, Imf::TiledInputPart>) {
-        if (file.header().hasTileDescription()) return;
+        if (file.header().hasTileDescription()) return 0;
         const Imath::Box2i window = file.header().dataWindow();
         const int step = lines_per_chunk(file.header().compression());
         for (int64_t y = window.min.y; y <= window.max.y; y += step) {
-            const char* bytes = nullptr;
+            const char* data = nullptr;
             int count = 0;
-            file.rawPixelData(static_cast<int>(y), bytes, count);
+            file.rawPixelData(static_cast<int>(y), data, count);
+            bytes += 16 + count;  // offset, line, size
         }
     }
+    return bytes;
 }
 
 /// A slice of a frame buffer with a value for `step` bytes. One of a subsampled channel goes to the first of its
@@ -184,7 +195,7 @@ struct ExrFile::Open {
 ExrFile::ExrFile(const std::string& path, const SizeProblem& size_problem) : path_(path) {
     check_readable(path);
     with_file_errors(path, [&] {
-        check_before_opening(path);
+        headers_ = check_before_opening(path);
         file_ = std::make_unique<Open>(path);
         for (int i = 0; i < file_->file.parts(); ++i) {
             parts_.push_back(part_of(file_->file.header(i)));
@@ -240,14 +251,23 @@ ColorPicture ExrFile::read_colors(size_t part, const std::vector<size_t>& channe
     });
 }
 
-void ExrFile::check_complete(size_t part) const {
-    const int number = static_cast<int>(part);
-    if (!file_->file.header(number).hasTileDescription())
-        return with_file_errors(path_, [&] {
+bool ExrFile::is_complete() const {
+    int64_t end = headers_;
+    bool has_tiles = false;
+    for (size_t part = 0; part < parts_.size(); ++part) {
+        const int number = static_cast<int>(part);
+        if (file_->file.header(number).hasTileDescription()) {
+            has_tiles = true;
+            for (size_t channel = 0; channel < parts_[part].channels.size(); ++channel) read(part, {channel});
+            continue;
+        }
+        with_file_errors(path_, [&] {
             Imf::InputPart input(file_->file, number);
-            check_chunks(input);
+            end += check_chunks(input);
+            if (parts_.size() > 1) end += 4 * chunks_of(input.header());  // each with the number of its part
         });
-    for (size_t channel = 0; channel < parts_[part].channels.size(); ++channel) read(part, {channel});
+    }
+    return has_tiles || end == static_cast<int64_t>(regular_file_size(path_));
 }
 
 }  // namespace cistula

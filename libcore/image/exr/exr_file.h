@@ -73,20 +73,21 @@ class ExrFile {
     /// blue; those of subsampled channels in the first of their pixels alone. Throws Error (file).
     ColorPicture read_colors(size_t part, const std::vector<size_t>& channels) const;
 
-    /// Throws Error (file) unless all pixels of a part are there.
-    void check_complete(size_t part) const;
+    /// Whether all pixels are there. After those of parts of lines alone there must be nothing. Throws Error (file).
+    bool is_complete() const;
 
   private:
     struct Open;
 
     std::string path_;
+    int64_t headers_ = 0;  // their bytes
     std::unique_ptr<Open> file_;
     std::vector<ExrPart> parts_;
 };
 
-/// All of a file as it stands: parts, levels, channels and attributes. Throws Error (file); deep data is
-/// refused.
-StoredFile read_stored_exr(const std::string& path);
+/// All of a file as it stands: parts, levels, channels and attributes; without `values` what its headers say, of whole
+/// resolutions. Throws Error (file); deep data is refused.
+StoredFile read_stored_exr(const std::string& path, bool values = true);
 
 /// Makes R, G and B of texels that hold RY = (R - Y) / Y, Y and BY = (B - Y) / Y. A channel that `is_halved` holds in
 /// the texels of even x and y alone; the others are filtered from these as OpenEXR's RgbaInputFile does, and colors

@@ -38,7 +38,8 @@ std::vector<size_t> all_channels(const ExrPart& part) {
     return channels;
 }
 
-LayeredPicture read_part(const ExrFile& file, size_t number) {
+/// A part; without `values` what its header says.
+LayeredPicture read_part(const ExrFile& file, size_t number, bool values = true) {
     const ExrPart& part = file.parts()[number];
     check_sampling(part, false);
     LayeredPicture picture;
@@ -50,7 +51,8 @@ LayeredPicture read_part(const ExrFile& file, size_t number) {
     picture.display_height = part.display.height;
     picture.attributes = part.attributes;
     picture.compression = part.compression;
-    for (ExrChannel& channel : file.read(number, all_channels(part))) {
+    std::vector<ExrChannel> channels = values ? file.read(number, all_channels(part)) : part.channels;
+    for (ExrChannel& channel : channels) {
         check_whole_numbers(channel);
         picture.channels.push_back({channel.name, channel.type == StoredType::half, std::move(channel.values)});
     }
@@ -121,13 +123,26 @@ ColorPicture read_colors(const ExrFile& file, FileColors& colors) {
 
 }  // namespace
 
-std::vector<PicturePart> read_exr_parts(const std::string& path) {
+namespace {
+
+std::vector<PicturePart> read_parts(const std::string& path, bool values) {
     return with_file_errors(path, [&] {
         const ExrFile file(path);
         std::vector<PicturePart> parts;
-        for (size_t i = 0; i < file.parts().size(); ++i) parts.push_back({file.parts()[i].name, read_part(file, i)});
+        for (size_t i = 0; i < file.parts().size(); ++i)
+            parts.push_back({file.parts()[i].name, read_part(file, i, values)});
         return parts;
     });
+}
+
+}  // namespace
+
+std::vector<PicturePart> read_exr_parts(const std::string& path) {
+    return read_parts(path, true);
+}
+
+std::vector<PicturePart> read_exr_headers(const std::string& path) {
+    return read_parts(path, false);
 }
 
 LayeredPicture read_exr(const std::string& path) {
@@ -145,8 +160,7 @@ LayeredPicture read_exr(const std::string& path) {
 bool exr_is_complete(const std::string& path) {
     try {
         const ExrFile file(path);
-        for (size_t i = 0; i < file.parts().size(); ++i) file.check_complete(i);
-        return true;
+        return file.is_complete();
     } catch (const Error&) {
         return false;
     }
@@ -157,19 +171,22 @@ ColorPicture read_exr_texture(const std::string& path, const SizeProblem& size_p
     return with_file_errors(path, [&] { return read_colors(ExrFile(path, size_problem), colors ? *colors : own); });
 }
 
-StoredFile read_stored_exr(const std::string& path) {
+StoredFile read_stored_exr(const std::string& path, bool values) {
     const ExrFile file(path);
     StoredFile result;
     result.format = "openexr";
     for (size_t number = 0; number < file.parts().size(); ++number) {
         const ExrPart& part = file.parts()[number];
         for (const ExrLevel level : part.levels) {
-            StoredPicture picture = {part.name, level.x, level.y, {}, part.display, {}, {}, {}};
+            StoredPicture picture = {part.name, level.x, level.y, part.data, part.display, {}, {}, {}};
+            if (!values && !picture.is_whole()) continue;
             if (picture.is_whole()) {  // those of the part, once
                 picture.attributes = part.header;
                 picture.packing = part.packing;
             }
-            for (ExrChannel& channel : file.read(number, all_channels(part), level, picture.data)) {
+            std::vector<ExrChannel> channels =
+                values ? file.read(number, all_channels(part), level, picture.data) : part.channels;
+            for (ExrChannel& channel : channels) {
                 StoredChannel stored = {channel.name, channel.type, channel.x_sampling, channel.y_sampling, {}};
                 if (channel.type == StoredType::uint)
                     stored.values = std::move(channel.numbers);

@@ -23,7 +23,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -40,12 +42,14 @@ namespace {
 class CheckedStream : public Imf::OStream {
   public:
     /// `descriptor` stays the caller's; `name` is for OpenEXR's messages.
-    CheckedStream(int descriptor, const std::string& name) : Imf::OStream(name.c_str()), file_(open(descriptor)) {
+    CheckedStream(int descriptor, const std::string& name, StopSignal stop)
+        : Imf::OStream(name.c_str()), file_(open(descriptor)), stop_(stop) {
         if (!file_) error_number_ = errno;
     }
     ~CheckedStream() override { close(); }
 
     void write(const char bytes[], int count) override {
+        if (stop_.is_given()) check_late();
         if (!file_ || std::fwrite(bytes, 1, static_cast<size_t>(count), file_) != static_cast<size_t>(count)) fail();
     }
     uint64_t tellp() override {
@@ -63,8 +67,17 @@ class CheckedStream : public Imf::OStream {
     }
     /// errno of the first failure; 0 if none.
     int error_number() const { return error_number_; }
+    /// Whether writing went on for too long after the signal to stop, and was ended.
+    bool is_late() const { return is_late_; }
 
   private:
+    using Clock = std::chrono::steady_clock;
+
+    void check_late() {
+        if (!stopped_) stopped_ = Clock::now();
+        is_late_ = Clock::now() - *stopped_ > std::chrono::milliseconds(500);
+        if (is_late_) throw std::runtime_error("interrupted");
+    }
     static FILE* open(int descriptor) {
         const int own = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
         FILE* const file = own < 0 ? nullptr : fdopen(own, "wb");
@@ -81,6 +94,9 @@ class CheckedStream : public Imf::OStream {
 
     FILE* file_;
     int error_number_ = 0;
+    const StopSignal stop_;
+    std::optional<Clock::time_point> stopped_;  // when the signal was first seen
+    bool is_late_ = false;
 };
 
 /// An attribute that every file has, here among the others.
@@ -259,17 +275,18 @@ bool lacks_chunks(int descriptor) {
     return access(name.c_str(), R_OK) == 0 && !exr_is_complete(name);
 }
 
-void write_parts(const std::string& path, const std::vector<PartToWrite>& parts, int most_threads) {
+void write_parts(const std::string& path, const std::vector<PartToWrite>& parts, int most_threads, StopSignal stop) {
     if (parts.empty()) throw std::invalid_argument("write_exr: a file needs a part");
     for (const PartToWrite& part : parts) check(part.picture);
     AtomicFile target(path);
-    CheckedStream stream(target.descriptor(), path);
+    CheckedStream stream(target.descriptor(), path, stop);
     errno = 0;
     try {
         write_pixels(stream, parts, most_threads);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& failure) {
+        if (stream.is_late()) stop.check();
         if (lacks_memory(failure)) throw std::bad_alloc();
         if (stream.error_number() == 0) throw file_error(path, "write", std::string(failure.what()));
     }
@@ -289,14 +306,14 @@ void set_exr_threads(int threads) {
     Imf::setGlobalThreadCount(threads);
 }
 
-void write_exr(const std::string& path, const LayeredPicture& picture, int most_threads) {
-    write_parts(path, {{"", picture}}, most_threads);
+void write_exr(const std::string& path, const LayeredPicture& picture, int most_threads, StopSignal stop) {
+    write_parts(path, {{"", picture}}, most_threads, stop);
 }
 
-void write_exr(const std::string& path, const std::vector<PicturePart>& parts, int most_threads) {
+void write_exr(const std::string& path, const std::vector<PicturePart>& parts, int most_threads, StopSignal stop) {
     std::vector<PartToWrite> all;
     for (const PicturePart& part : parts) all.push_back({part.name, part.picture});
-    write_parts(path, all, most_threads);
+    write_parts(path, all, most_threads, stop);
 }
 
 }  // namespace cistula

@@ -142,4 +142,15 @@ StoredFile StoredReader::read(const std::string& path) {
     return file;
 }
 
+std::pair<StoredFile, StoredFile> StoredReader::read_two(
+    const std::string& first, const std::string& second,
+    const std::function<bool(const StoredFile&, const StoredFile&)>& want) {
+    if (is_exr(first) && is_exr(second)) {
+        std::pair headers(read_stored_exr(first, false), read_stored_exr(second, false));
+        if (!want(headers.first, headers.second)) return headers;
+    }
+    StoredFile a = read(first);
+    return {std::move(a), read(second)};
+}
+
 }  // namespace cistula

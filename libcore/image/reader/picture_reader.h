@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -78,6 +79,10 @@ class StoredReader : public GuardedReader {
     /// All of a file: parts or subimages, levels, channels, attributes, no value converted. Throws
     /// Error (file) with the path, and std::bad_alloc.
     StoredFile read(const std::string& path);
+
+    /// Two files to be compared; the values of EXRs only where `want` says so of what their headers say.
+    std::pair<StoredFile, StoredFile> read_two(const std::string& first, const std::string& second,
+                                               const std::function<bool(const StoredFile&, const StoredFile&)>& want);
 };
 
 }  // namespace cistula

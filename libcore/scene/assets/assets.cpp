@@ -110,7 +110,7 @@ class AssetLoader {
         std::shared_ptr<const MeshData>& read = meshes_[std::filesystem::path(mesh->file).lexically_normal()];
         if (!read) {
             stop_.check();
-            read = std::make_shared<const MeshData>(read_mesh(mesh->file));
+            read = std::make_shared<const MeshData>(read_mesh(mesh->file, stop_));
             check_mesh(*read);
             assets_.files.insert(assets_.files.end(), read->files.begin(), read->files.end());
         }

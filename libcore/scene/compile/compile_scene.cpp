@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -27,6 +28,7 @@
 #include "scene/compile/materials/required_effects.h"
 #include "scene/compile/meshes/mesh_apex.h"
 #include "scene/compile/scene_hash.h"
+#include "scene/compile/solids/compile_balls.h"
 #include "scene/compile/solids/compile_solids.h"
 #include "scene/compile/solids/placed_bodies.h"
 #include "scene/description/rotation.h"
@@ -99,6 +101,7 @@ class Compiler {
         scene_.hulls.resize(source_.solids.size());
         places_.boxes.resize(source_.solids.size());
         places_.distances.resize(source_.solids.size());
+        flat_planes_.resize(source_.solids.size());
         by_planes_.assign(source_.solids.size(), false);
         if (description_.contact) hash_.add(*description_.contact);
         hash_.add(normalization_.center);
@@ -107,6 +110,7 @@ class Compiler {
 
         for (const SolidContacts& solid : bodies_.contacts.solids) scene_.reaches.push_back(solid.reach);
         compile_convex();
+        compile_balls();
         lights_ = normalize_lights(source_, normalization_, bodies_.convex);
         light_faces_.resize(lights_.size());
         find_convex_incidents(lights_, bodies_, incident_reach(), light_faces_);
@@ -118,6 +122,8 @@ class Compiler {
         settle_on_faces();
         add_shared_planes(scene_, bodies_.contacts);
         list_shared_planes(scene_, bodies_, places_.boxes);
+        find_near_balls(scene_, bodies_.balls, places_.boxes, flat_planes_);
+        refuse_lights_on_balls();
         add_slabs();
         compile_shading();
         compile_lights();
@@ -132,8 +138,8 @@ class Compiler {
   private:
     void compile_convex() {
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
-            if (!source_.solids[i].platonic) continue;
-            for (const PlanePair& p : convex_solid(*source_.solids[i].platonic, i, normalization_).planes) {
+            if (!source_.solids[i].polyhedron) continue;
+            for (const PlanePair& p : convex_solid(*source_.solids[i].polyhedron, i, normalization_).planes) {
                 hash_.add(p.normal);
                 hash_.add(p.low);
                 hash_.add(p.high);
@@ -149,6 +155,30 @@ class Compiler {
             places_.boxes[convex.solid] = convex.box;
             by_planes_[convex.solid] = true;
         }
+    }
+
+    void compile_balls() {
+        for (const PlacedBall& ball : bodies_.balls) {
+            hash_.add(ball.center);
+            hash_.add(ball.radius);
+            hash_.add(ball.solid);
+            if (source_.materials[source_.solids[ball.solid].material].texture >= 0)
+                for (const dvec3& axis : ball.axes) hash_.add(axis);
+            places_.boxes[ball.solid] = ball.box();
+            by_planes_[ball.solid] = true;
+        }
+        add_balls(scene_, bodies_.balls);
+    }
+
+    /// Shadow rays know whether a light is inside a ball, so it must not be on one.
+    void refuse_lights_on_balls() const {
+        for (const NormalizedLight& light : lights_)
+            for (const PlacedBall& ball : bodies_.balls)
+                if (light.lights() && ball.distance(light.position) <= incident_reach())
+                    throw scene_error(description_, light.place,
+                                      std::string(light.convex < 0 ? "the light lies" : "a light on its edges lies") +
+                                          " on the surface of the sphere " + source_.solids[ball.solid].place,
+                                      "move it inside or outside");
     }
 
     void add_slabs() {
@@ -276,12 +306,12 @@ class Compiler {
         for (uint32_t first = 0, end = 0; first < count; first = end) {
             for (size_t triangles = 0; end < count && end - first < most_at_once && triangles < most_triangles; ++end)
                 triangles += source_.solids[end].mesh.triangles.size();
-            const auto is_mesh = [&](uint32_t i) { return !source_.solids[i].platonic && !by_planes_[i]; };
+            const auto is_mesh = [&](uint32_t i) { return !source_.solids[i].polyhedron && !by_planes_[i]; };
             prepared.resize(end - first);
             tbb::parallel_invoke(
                 [&] {
                     for (uint32_t i = first; i < end; ++i)
-                        if (!source_.solids[i].platonic) hash_mesh(i);
+                        if (source_.solids[i].is_mesh()) hash_mesh(i);
                 },
                 [&] {
                     tbb::parallel_for(first, end, [&](uint32_t i) {
@@ -304,7 +334,10 @@ class Compiler {
         Solid& solid = scene_.solids[number];
         solid.kind = from.closed ? SolidKind::mesh : SolidKind::sheet;
         solid.first_slab = solid.slab_count = 0;
-        solid.flat = !from.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * normalization_.extent, solid) ? 1 : 0;
+        solid.flat = !from.closed && is_flat(mesh, 4 * RealTraits<Real>::unit * normalization_.extent, solid,
+                                             flat_planes_[number])
+                         ? 1
+                         : 0;
         solid.first_triangle = triangle_count_;
         solid.first_uv = static_cast<uint32_t>(scene_.uvs.size());
         append_clusters(mesh, prepared.groups, prepared.heights, number, triangle_count_, scene_.clusters);
@@ -321,8 +354,9 @@ class Compiler {
     }
 
     /// Whether all corners lie within `tolerance` of the plane of the largest triangle, which is then stored in the
-    /// solid.
-    static bool is_flat(const NormalizedMesh& mesh, double tolerance, Solid& solid) {
+    /// solid and in `plane`.
+    static bool is_flat(const NormalizedMesh& mesh, double tolerance, Solid& solid,
+                        std::optional<PlaneEquation>& plane) {
         dvec3 normal(0), on(0);
         for (uint32_t t = 0; t < mesh.size(); ++t) {
             const auto corners = mesh.corners(t);
@@ -337,6 +371,7 @@ class Compiler {
                 if (magnitude(dot(normal, mesh.vertex(corner) - on)) > tolerance) return false;
         solid.plane_normal = Vec3<float>(normal);
         solid.plane_offset = float(dot(normal, on));
+        plane = {normal, dot(normal, on)};
         return true;
     }
 
@@ -385,6 +420,8 @@ class Compiler {
         for (const ConvexSolid& convex : bodies_.convex)
             places_.distances[convex.solid] =
                 light_distances(lights_, convex, light_faces_, normalization_.extent, 2 * incident_reach());
+        for (const PlacedBall& ball : bodies_.balls)
+            places_.distances[ball.solid] = light_distances(lights_, ball, normalization_.extent, 2 * incident_reach());
         const dvec3 bound =
             radiance_bound(source_, textures, places_, 1 / normalization_.factor, lights_, scene_.warnings);
         scale_ = radiance_scale(description_, bound, sizeof(Real) == sizeof(float));
@@ -414,6 +451,8 @@ class Compiler {
             hash_.add(static_cast<uint32_t>(t.filter));
             hash_.add(t.repeat[0]);
             hash_.add(t.repeat[1]);
+            for (const TextureWrap wrap : t.wrap)  // with the hash of before for all that repeat
+                if (wrap != TextureWrap::repeat) hash_.add(static_cast<uint32_t>(wrap));
         }
         for (const Texture& t : textures.textures)
             hash_.add_bytes(textures.texels.data() + t.first_texel,
@@ -532,7 +571,7 @@ class Compiler {
         std::vector<MaterialUse> uses;
         for (size_t i = 0; i < source_.solids.size(); ++i)
             uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place,
-                            source_.solids[i].closed, by_planes_[i]});
+                            source_.solids[i].closed, by_planes_[i], source_.solids[i].sphere != nullptr});
         scene_.effect_reasons =
             explain_effects(description_, uses, light_on_face(source_, lights_, light_faces_), contact());
         scene_.effects = required_effects(scene_.effect_reasons);
@@ -571,7 +610,8 @@ class Compiler {
     std::vector<NormalizedLight> lights_;
     LightFaces light_faces_;
     SolidPlaces places_;
-    std::vector<bool> by_planes_;  // each solid is given by planes
+    std::vector<bool> by_planes_;                            // each solid is given by planes, or a ball
+    std::vector<std::optional<PlaneEquation>> flat_planes_;  // of each flat sheet
     uint32_t triangle_count_ = 0;
     RadianceScale scale_;
     SceneHash hash_;

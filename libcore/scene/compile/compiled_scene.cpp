@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/default_rounding.h"
+#include "scene/compile/solids/compile_solids.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {
@@ -10,46 +11,29 @@ namespace {
 
 using glm::dvec3;
 
-struct Plane {
-    dvec3 normal;
-    double distance;
-};
-
-// Tolerance for corners of planes: far above the rounding of a corner's distance from its planes. Planes that nearly
-// meet the corner enlarge the box by no more than this.
-constexpr double corner_slack = 0x1p-30;
+// Planes as near to an edge hold it: far above rounding.
+constexpr double edge_slack = 0x1p-30;
 
 /// The box of a convex solid whose planes are pushed out by 64 u M, u that of float.
 template <class Real>
 Box convex_box(const SceneView<Real>& scene, const Solid& solid) {
     const double extent = static_cast<double>(scene.extent);
     const double push = 64 * 0x1p-24 * extent;
-    std::vector<Plane> planes;
-    for (uint32_t i = 0; i < solid.slab_count; ++i) {
-        const Slab<Real>& slab = scene.slabs[solid.first_slab + i];
-        const dvec3 normal(slab.normal);
-        planes.push_back({normal, static_cast<double>(slab.high) + push});
-        if (slab.low > -RealTraits<Real>::infinity) planes.push_back({-normal, push - static_cast<double>(slab.low)});
-    }
+    std::vector<BodyPlane> planes;
+    for (const SolidPlane& plane : solid_planes(scene, solid)) planes.push_back({plane.normal, plane.offset + push});
     Box box;
-    for (size_t i = 0; i < planes.size(); ++i) {
-        for (size_t j = i + 1; j < planes.size(); ++j) {
-            const dvec3 across = cross(planes[i].normal, planes[j].normal);
-            for (size_t k = j + 1; k < planes.size(); ++k) {
-                const double determinant = dot(across, planes[k].normal);
-                if (magnitude(determinant) < 1e-6) continue;
-                const dvec3 corner =
-                    (planes[i].distance * cross(planes[j].normal, planes[k].normal) +
-                     planes[j].distance * cross(planes[k].normal, planes[i].normal) + planes[k].distance * across) /
-                    determinant;
-                const auto has_corner = [&](const Plane& p) {
-                    return dot(p.normal, corner) <= p.distance + corner_slack * extent;
-                };
-                if (std::all_of(planes.begin(), planes.end(), has_corner)) box.add(corner);
-            }
-        }
-    }
+    for (const PlaneEdge& edge : edges_of(planes, edge_slack * extent))
+        for (const dvec3& end : edge.ends) box.add(end);
     return box;
+}
+
+/// The box of a convex solid or a ball.
+template <class Real>
+Box solid_box(const SceneView<Real>& scene, const Solid& solid) {
+    if (!is_ball(solid)) return convex_box(scene, solid);
+    const dvec3 center(scene.balls[solid.first_slab].center);
+    const dvec3 radius(double(scene.balls[solid.first_slab].radius));
+    return {center - radius, center + radius};
 }
 
 template <class Real>
@@ -64,7 +48,7 @@ Box cluster_box(const Cluster<Real>& cluster) {
 template <class Real>
 RTCBuildPrimitive boxed_primitive(const SceneView<Real>& scene, uint32_t primitive) {
     const bool convex = primitive < scene.convex.size;
-    const Box box = convex ? convex_box(scene, scene.solids[scene.convex[primitive]])
+    const Box box = convex ? solid_box(scene, scene.solids[scene.convex[primitive]])
                            : cluster_box(scene.clusters[primitive - scene.convex.size]);
     return padded_primitive(box, 0x1p-18 * static_cast<double>(scene.extent), primitive);
 }
@@ -82,6 +66,8 @@ SceneView<Real> CompiledScene<Real>::view() const {
     v.triangle_planes = span_of(triangle_planes);
     v.near_planes = span_of(near_planes);
     v.plane_solids = span_of(plane_solids);
+    v.balls = span_of(balls);
+    v.ball_planes = span_of(ball_planes);
     v.convex = span_of(convex);
     v.clusters = span_of(clusters);
     v.uvs = span_of(uvs);
@@ -110,9 +96,10 @@ size_t CompiledScene<Real>::memory() const {
     for (const Hull& hull : hulls) outlined += bytes_of(hull.points);
     return outlined + bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) +
            bytes_of(shared_planes) + bytes_of(slab_planes) + bytes_of(triangle_planes) + bytes_of(near_planes) +
-           bytes_of(plane_solids) + bytes_of(clusters) + bytes_of(uvs) + bytes_of(materials) + bytes_of(lights) +
-           bytes_of(incidents) + bytes_of(visible_lights) + bytes_of(textures) + bytes_of(texels) + bytes_of(tree) +
-           bytes_of(tree_items) + bytes_of(visible_light_tree) + bytes_of(light_groups) + bytes_of(sky_stops);
+           bytes_of(plane_solids) + bytes_of(balls) + bytes_of(ball_planes) + bytes_of(clusters) + bytes_of(uvs) +
+           bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(visible_lights) +
+           bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
+           bytes_of(visible_light_tree) + bytes_of(light_groups) + bytes_of(sky_stops);
 }
 
 template <class Real>

@@ -39,6 +39,8 @@ struct CompiledScene {
     std::vector<SlabGroup<Real>> slab_groups;
     std::vector<SharedPlane<Real>> shared_planes;  // with the next four: empty where no faces coincide
     std::vector<uint32_t> slab_planes, triangle_planes, near_planes, plane_solids;
+    std::vector<Ball<Real>> balls;
+    std::vector<BallPlane<Real>> ball_planes;
     std::vector<uint32_t> convex;
     std::vector<Cluster<Real>> clusters;
     std::vector<Vec2<Real>> uvs;

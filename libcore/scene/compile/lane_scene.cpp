@@ -103,6 +103,9 @@ void OwnedLaneScene<Real>::find_sets(const SceneView<Real>& from) {
         return is_closed(i) && largest_component(scene_.materials[solids_[i].material].absorption) > Real(0);
     });
     fill(scene_.clear, [&](uint32_t i) { return is_clear(from, numbers_[i]); });
+    const auto ball = [&](uint32_t i) { return from.balls[solids_[i].first_slab]; };
+    fill(scene_.kin, [&](uint32_t i) { return is_ball(solids_[i]) && ball(i).has_kin != 0; });
+    for (const Ball<Real>& each : from.balls) scene_.has_ball_starts |= each.plane_count != 0 || each.near_meshes != 0;
     fill(scene_.transmitting, [&](uint32_t i) { return transmits(from, numbers_[i]); });
 }
 
@@ -175,7 +178,7 @@ void OwnedLaneScene<Real>::fill_tables() {
         set(tables.material, int(solid.material));
         set(tables.texture, material.texture);
         set(tables.first_slab, int(solid.first_slab));
-        set(tables.is_convex, int(solid.kind == SolidKind::convex));
+        set(tables.form, form_of(solid));
     }
 }
 

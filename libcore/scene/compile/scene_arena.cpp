@@ -17,6 +17,8 @@ void for_each_span(SceneView<Real>& view, const Visit& visit) {
     visit(view.triangle_planes);
     visit(view.near_planes);
     visit(view.plane_solids);
+    visit(view.balls);
+    visit(view.ball_planes);
     visit(view.convex);
     visit(view.clusters);
     visit(view.facets);

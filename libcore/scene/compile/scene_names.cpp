@@ -28,9 +28,9 @@ SceneNames name_scene(const SceneSource& source) {
         add_light(names, "light " + std::to_string(i), light.place, light.color, light.shown());
     }
     for (const SourceSolid& solid : source.solids) {
-        if (!solid.platonic) continue;
-        const EdgeLights& on_edges = solid.platonic->edge_lights;
-        const size_t edges = platonic_shape(solid.platonic->solid).edges.size();
+        if (!solid.polyhedron) continue;
+        const EdgeLights& on_edges = solid.polyhedron->edge_lights;
+        const size_t edges = polyhedron_of(*solid.polyhedron).edges.size();
         for (size_t edge = 0; edge < edges; ++edge)
             for (int i = 0; i < on_edges.count; ++i)
                 add_light(names, solid.name + " edge " + std::to_string(edge) + " light " + std::to_string(i),

@@ -23,7 +23,7 @@ void add_solid(Box& box, const SolidObject& solid) {
     for (const glm::dvec3& p : vertices) box.add(p);
     const EdgeLights& lights = solid.edge_lights;
     if (lights.count == 0 || !lights.shown()) return;
-    for (const auto& edge : platonic_shape(solid.solid).edges) {
+    for (const auto& edge : polyhedron_of(solid).edges) {
         for (int i = 0; i < lights.count; ++i) {
             const double s = (i + 1.0) / (lights.count + 1.0);
             const glm::dvec3 &a = vertices[edge.vertices[0]], &b = vertices[edge.vertices[1]];
@@ -46,7 +46,7 @@ double largest_coordinate(const Box& box, const glm::dvec3& center) {
 std::vector<glm::dvec3> world_vertices(const SolidObject& solid) {
     const Rotation rotation(solid.rotation);
     std::vector<glm::dvec3> vertices;
-    for (const glm::dvec3& p : platonic_shape(solid.solid).vertices)
+    for (const glm::dvec3& p : polyhedron_of(solid).vertices)
         vertices.push_back(solid.center + rotation(solid.radius * p));
     return vertices;
 }
@@ -54,8 +54,10 @@ std::vector<glm::dvec3> world_vertices(const SolidObject& solid) {
 Box world_box(const SceneSource& source) {
     Box box;
     for (const SourceSolid& solid : source.solids) {
-        if (solid.platonic) {
-            add_solid(box, *solid.platonic);
+        if (solid.polyhedron) {
+            add_solid(box, *solid.polyhedron);
+        } else if (solid.sphere) {
+            add_sphere(box, solid.sphere->center, solid.sphere->radius);
         } else {
             for (const glm::dvec3& p : solid.mesh.vertices)
                 if (is_finite(p)) box.add(p);
@@ -82,6 +84,11 @@ SceneNormalization find_normalization(const SceneSource& source) {
     const double largest = box.empty() ? 0 : largest_coordinate(box, normalization.center);
     if (!is_finite(largest) || (largest > 0 && (largest < 0x1p-900 || largest > 0x1p900)))
         throw scene_error(description, "", "the scene's size is outside what doubles can hold (2^-900 to 2^900)");
+    for (const SourceSolid& solid : source.solids)
+        if (solid.polyhedron && solid.polyhedron->radius * polyhedron_of(*solid.polyhedron).reach < 0x1p-50 * largest)
+            throw scene_error(description, solid.place,
+                              "so small beside the scene that double precision makes a point of it",
+                              "give it a larger radius, or bring what is far away nearer");
     if (!description.frame && largest > 0) {
         int exponent;
         std::frexp(largest, &exponent);

@@ -24,8 +24,8 @@ struct SceneNormalization {
 /// A box around a scene's solids and visible lights, in scene units.
 Box world_box(const SceneSource& source);
 
-/// The frame of a scene, for all frames of a film. M lies in [1, 2), unless the description gives the frame; then M follows from it, and 2 or
-/// more is an error.
+/// The frame of a scene, for all frames of a film. M lies in [1, 2), unless the description gives the frame; then M
+/// follows from it, and 2 or more is an error.
 SceneNormalization find_normalization(const SceneSource& source);
 
 /// A solid's corners in scene units.

@@ -58,7 +58,7 @@ void check_light(const SceneDescription& scene, const Light& light, const KeyTab
     check.refuse(falloff_fault(light.falloff, light.radius));
 }
 
-void check_platonic(const SceneDescription& scene, const SolidObject& solid, const std::string& place) {
+void check_polyhedron(const SceneDescription& scene, const SolidObject& solid, const std::string& place) {
     solid_fields(solid, FieldCheck(scene, place, solid_keys));
     const EdgeLights& lights = solid.edge_lights;
     if (lights.count < 0) throw scene_error(scene, place, "the number of lights on an edge must not be negative");
@@ -194,15 +194,20 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
         solid.place = object.place;
         solid.object = number;
         solid.material = static_cast<uint32_t>(object.material);
-        if (const auto* platonic = std::get_if<SolidObject>(&object.shape)) {
-            check_platonic(description, *platonic, object.place);
-            solid.platonic = platonic;
-            lights += platonic_shape(platonic->solid).edges.size() * static_cast<size_t>(platonic->edge_lights.count);
+        if (const auto* polyhedron = std::get_if<SolidObject>(&object.shape)) {
+            check_polyhedron(description, *polyhedron, object.place);
+            solid.polyhedron = polyhedron;
+            if (const std::string& warning = polyhedron_of(*polyhedron).warning; !warning.empty())
+                source.warnings.push_back(scene_error(description, object.place, warning).what());
+            lights += polyhedron_of(*polyhedron).edges.size() * static_cast<size_t>(polyhedron->edge_lights.count);
             if (lights > most_lights)
                 throw scene_error(
                     description, object.place,
                     "with the lights on its edges the scene has more than " + std::to_string(most_lights) + " lights",
                     "lower its count");
+        } else if (const auto* sphere = std::get_if<SphereObject>(&object.shape)) {
+            solid_fields(*sphere, FieldCheck(description, object.place, solid_keys));
+            solid.sphere = sphere;
         } else {
             const auto& triangles = std::get<TrianglesObject>(object.shape);
             solid.mesh.vertices = triangles.vertices;
@@ -220,11 +225,11 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
     require_different_names(source);
     for (const SourceSolid& solid : source.solids) {
         const MaterialDescription& material = source.materials[solid.material];
-        if (material.texture < 0) continue;
+        if (material.texture < 0 || solid.sphere) continue;
         const std::string what = "the material " + material.name + " has a texture, but ";
-        if (solid.platonic)
+        if (solid.polyhedron)
             throw scene_error(description, solid.place,
-                              what + "a " + platonic_name(solid.platonic->solid) + " has no texture coordinates",
+                              what + "a " + polyhedron_of(*solid.polyhedron).name + " has no texture coordinates",
                               "give it a material without a texture");
         if (solid.mesh.uvs.empty())
             throw scene_error(description, solid.place, what + "the triangles have no texture coordinates",
@@ -289,7 +294,7 @@ std::vector<std::vector<SourceSolid>> still_meshes(const SceneDescription& descr
     std::vector<std::vector<SourceSolid>> solids(description.objects.size());
     const std::vector<size_t>& moving = description.motion->objects;
     for (const SourceSolid& solid : source.solids)
-        if (!solid.platonic && description.objects[solid.object].material >= 0 &&
+        if (solid.is_mesh() && description.objects[solid.object].material >= 0 &&
             !std::binary_search(moving.begin(), moving.end(), solid.object))
             solids[solid.object].push_back(with_mesh(solid, solid.mesh.copy()));
     return solids;

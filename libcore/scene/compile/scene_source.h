@@ -17,8 +17,9 @@ namespace cistula {
 /// The source of one compiled Solid.
 struct SourceSolid {
     std::string name, place;
-    uint32_t material = 0;                  // index into SceneSource::materials
-    const SolidObject* platonic = nullptr;  // null: the solid is `mesh`
+    uint32_t material = 0;                    // index into SceneSource::materials
+    const SolidObject* polyhedron = nullptr;  // null: the solid is `sphere` or, without one, `mesh`
+    const SphereObject* sphere = nullptr;
     /// The triangles that are rendered, in file order; those of a closed mesh counter-clockwise seen from outside.
     MeshSource mesh;
     MeshEdges edges;              // of the mesh, if they were found when it was found to be closed; else none
@@ -27,6 +28,9 @@ struct SourceSolid {
     uint32_t body = 0;            // of several solids that one mesh makes, from 0; they share its name
     bool keep_triangles = false;  // the mesh is not given by planes, even where it could be
     size_t object = 0;            // whose it is, by number in the description
+
+    /// Whether it is given by triangles, of which planes may be made.
+    bool is_mesh() const { return !polyhedron && !sphere; }
 };
 
 /// The solid's name, or one after its place in the file, "object3", if the file gives none.

@@ -14,6 +14,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "cistula/model/scene_view.h"
+
 namespace cistula {
 
 /// The numbers that rays are traced with.
@@ -34,6 +36,7 @@ struct MaterialDescription {
     double index = 1;
     glm::dvec3 absorption{0};  // per unit of length
     bool fresnel = false;
+    std::string map;  // of an OBJ's material: the picture that its library names for the color; renders do without
 };
 
 struct MeshData;    // readers/meshes/polygon_mesh.h
@@ -45,8 +48,9 @@ struct TextureDescription {
     std::string file;                          // absolute or relative to the working directory
     std::shared_ptr<const TexelArray> texels;  // of a program that has no file
     std::array<glm::dvec3, 2> checker{glm::dvec3{1}, glm::dvec3{0}};
-    bool bilinear = true;    // ignored by a checkerboard, which is always nearest
-    glm::dvec2 repeat{1};    // factor on uv; a checkerboard's period is 1 in uv: two cells
+    bool bilinear = true;               // ignored by a checkerboard, which is always nearest
+    glm::dvec2 repeat{1};               // factor on uv; a checkerboard's period is 1 in uv: two cells
+    std::array<TextureWrap, 2> wrap{};  // beyond the edges, along u, v
     std::string colorspace;  // one of color_encoding_names (image/color/color_encoding.h); empty: what the file says
     bool strict = false;     // texels that are negative or not finite are an error, and not clamped
     std::string place;       // "/textures/tiles", "line 3"
@@ -68,12 +72,23 @@ struct EdgeLights {
     bool shown() const { return visible && radius > 0; }
 };
 
+struct Polyhedron;  // polyhedron.h
+
+/// A convex body given by its planes: a Platonic solid, or any.
 struct SolidObject {
     PlatonicSolid solid = PlatonicSolid::octahedron;
+    std::shared_ptr<const Polyhedron> body;  // in place of the Platonic solid
     glm::dvec3 center{0};
-    double radius = 1;       // of the circumscribed sphere
+    double radius = 1;       // factor of the body; of a Platonic solid, of the circumscribed sphere
     glm::dvec3 rotation{0};  // degrees about x, then y, then z
     EdgeLights edge_lights;
+};
+
+/// A solid sphere. A texture's longitudes run about its z axis, which `rotation` turns.
+struct SphereObject {
+    glm::dvec3 center{0};
+    double radius = 1;
+    glm::dvec3 rotation{0};  // degrees about x, then y, then z
 };
 
 /// A mesh given in the scene file. Closed meshes become solids with an inside, others are sheets seen from both sides.
@@ -98,7 +113,7 @@ struct MeshObject {
 struct ObjectDescription {
     std::string name;
     int material = -1;  // -1 only for a mesh that brings its own
-    std::variant<SolidObject, TrianglesObject, MeshObject> shape;
+    std::variant<SolidObject, SphereObject, TrianglesObject, MeshObject> shape;
     std::string place;  // JSON pointer of the object in the file, for messages: "/objects/2"
 };
 

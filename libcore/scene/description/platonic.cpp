@@ -65,8 +65,8 @@ dvec3 plain_cross(const dvec3& a, const dvec3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-PlatonicShape::Face face_across(const PlatonicShape& shape, uint32_t id, const dvec3& normal) {
-    PlatonicShape::Face face{id, normal, {}};
+Polyhedron::Face face_across(const Polyhedron& shape, uint32_t id, const dvec3& normal) {
+    Polyhedron::Face face{id, normal, {}};
     std::vector<uint32_t> on;
     for (uint32_t i = 0; i < shape.vertices.size(); ++i)
         if (dot(normal, shape.vertices[i]) > shape.inradius - 1e-9) on.push_back(i);
@@ -89,32 +89,9 @@ PlatonicShape::Face face_across(const PlatonicShape& shape, uint32_t id, const d
     return face;
 }
 
-void add_edges(PlatonicShape& shape) {
-    for (const auto& face : shape.faces) {
-        for (size_t i = 0; i < face.vertices.size(); ++i) {
-            const uint32_t a = face.vertices[i];
-            const uint32_t b = face.vertices[(i + 1) % face.vertices.size()];
-            if (a < b) shape.edges.push_back({{a, b}, {face.id, face.id}});
-        }
-    }
-    std::sort(shape.edges.begin(), shape.edges.end(),
-              [](const auto& a, const auto& b) { return a.vertices < b.vertices; });
-    for (const auto& face : shape.faces) {
-        for (size_t i = 0; i < face.vertices.size(); ++i) {
-            const uint32_t b = face.vertices[i];
-            const uint32_t a = face.vertices[(i + 1) % face.vertices.size()];
-            if (a > b) continue;
-            const std::array<uint32_t, 2> ends{a, b};
-            const auto edge = std::find_if(shape.edges.begin(), shape.edges.end(),
-                                           [&](const auto& other) { return other.vertices == ends; });
-            edge->faces[1] = face.id;
-        }
-    }
-    for (auto& edge : shape.edges) std::sort(edge.faces.begin(), edge.faces.end());
-}
-
-PlatonicShape make_shape(PlatonicSolid solid) {
-    PlatonicShape shape;
+Polyhedron make_shape(PlatonicSolid solid) {
+    Polyhedron shape;
+    shape.name = platonic_name(solid);
     std::vector<dvec3> normals;
     const double third = 1 / std::sqrt(3.0);
     switch (solid) {
@@ -150,18 +127,18 @@ PlatonicShape make_shape(PlatonicSolid solid) {
     for (const dvec3& n : normals) {
         if (!single && !first_coordinate_positive(n)) continue;
         const uint32_t low = 2 * static_cast<uint32_t>(shape.planes.size());
-        shape.planes.push_back({n, single});
+        shape.planes.push_back({n, single ? -INFINITY : -shape.inradius, shape.inradius});
         if (!single) shape.faces.push_back(face_across(shape, low, -n));
         shape.faces.push_back(face_across(shape, low + 1, n));
     }
-    add_edges(shape);
+    find_edges(shape);
     return shape;
 }
 
 }  // namespace
 
-const PlatonicShape& platonic_shape(PlatonicSolid solid) {
-    static const std::array<PlatonicShape, 5> shapes = {
+const Polyhedron& platonic_shape(PlatonicSolid solid) {
+    static const std::array<Polyhedron, 5> shapes = {
         make_shape(PlatonicSolid::tetrahedron), make_shape(PlatonicSolid::cube), make_shape(PlatonicSolid::octahedron),
         make_shape(PlatonicSolid::dodecahedron), make_shape(PlatonicSolid::icosahedron)};
     return shapes[static_cast<size_t>(solid)];
@@ -170,14 +147,6 @@ const PlatonicShape& platonic_shape(PlatonicSolid solid) {
 const char* platonic_name(PlatonicSolid solid) {
     static constexpr const char* names[] = {"tetrahedron", "cube", "octahedron", "dodecahedron", "icosahedron"};
     return names[static_cast<size_t>(solid)];
-}
-
-std::vector<std::array<uint32_t, 3>> triangulated(const PlatonicShape& shape) {
-    std::vector<std::array<uint32_t, 3>> triangles;
-    for (const auto& face : shape.faces)
-        for (size_t i = 2; i < face.vertices.size(); ++i)
-            triangles.push_back({face.vertices[0], face.vertices[i - 1], face.vertices[i]});
-    return triangles;
 }
 
 }  // namespace cistula

@@ -99,6 +99,17 @@ CameraDescription read_camera(const JsonValue& value) {
     value.fail(problem);
 }
 
+/// What lies beyond a texture's edges: one word for both axes, or one for each.
+void read_wrap(JsonObject& keys, TextureDescription& texture) {
+    const Key word{"wrap", KeyType::choice, {}, {}, false, texture_file_keys.find("wrap")->choices};
+    if (!keys.has("wrap")) return;
+    const JsonValue wrap = keys.at("wrap");
+    if (wrap.json().is_array() && wrap.json().size() != 2)
+        wrap.fail_expected(expected_text(word) + ", or two of them for u and v");
+    for (size_t axis = 0; axis < 2; ++axis)
+        texture.wrap[axis] = static_cast<TextureWrap>((wrap.json().is_array() ? wrap.item(axis) : wrap).choice(word));
+}
+
 TextureDescription read_texture(const JsonValue& value, const std::string& base_dir) {
     TextureDescription texture;
     texture.place = value.place();
@@ -107,7 +118,7 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
     const bool has_checker = is_object && value.json().contains("checker");
     if (has_file && has_checker) value.fail("expected one of 'file' and 'checker', found both");
     if (is_object && !has_file && !has_checker)
-        fail_without_form(value, {"file", "filter", "checker", "repeat", "colorspace", "strict"},
+        fail_without_form(value, {"file", "filter", "checker", "repeat", "wrap", "colorspace", "strict"},
                           "expected one of the keys 'file' and 'checker'");
     if (!has_checker) {
         JsonObject keys(value, texture_file_keys);
@@ -115,6 +126,7 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
         texture.file = file_beside_scene(texture.file, base_dir);
         if (const int filter = keys.read_choice("filter"); filter >= 0) texture.bilinear = filter == 1;
         keys.read("repeat", texture.repeat);
+        read_wrap(keys, texture);
         if (const int name = keys.read_choice("colorspace"); name >= 0)
             texture.colorspace = color_encoding_names[static_cast<size_t>(name)];
         keys.read("strict", texture.strict);
@@ -128,6 +140,7 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
     texture.checker = {colors.item(0).color(color), colors.item(1).color(color)};
     texture.bilinear = false;
     keys.read("repeat", texture.repeat);
+    read_wrap(keys, texture);
     keys.finish();
     return texture;
 }
@@ -169,6 +182,7 @@ void read_background(const JsonValue& value, const std::string& base_dir, SceneD
         keys.read("file", texture.file);
         texture.file = file_beside_scene(texture.file, base_dir);
         texture.place = value.place();
+        texture.wrap[1] = TextureWrap::clamp;
         keys.read("rotate", sky.rotation);
         keys.read("scale", sky.scale);
         sky.texture = scene.sky ? scene.sky->texture : static_cast<int>(scene.textures.size());

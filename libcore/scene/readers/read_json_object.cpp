@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/suggest.h"
+#include "scene/description/polyhedron.h"
 #include "scene/readers/json_reader.h"
 #include "scene/readers/meshes/polygon.h"
 #include "scene/readers/scene_formats.h"
@@ -41,12 +42,103 @@ EdgeLights read_edge_lights(const JsonValue& value) {
     return lights;
 }
 
+const KeyTable* const solid_tables[] = {&sphere_keys, &box_keys, &convex_keys, &prism_keys,
+                                        &solid_keys};  // messages name these first
+
+/// The keys of a solid, told by its name.
+const KeyTable& table_of_solid(const JsonValue& value) {
+    std::vector<std::string_view> names;
+    std::vector<const KeyTable*> tables;
+    for (const KeyTable* table : solid_tables)
+        for (const std::string_view name : table->find("solid")->choices)
+            names.push_back(name), tables.push_back(table);
+    const Key all{"solid", KeyType::choice, {}, {}, true, names};
+    return *tables[static_cast<size_t>(value.member("solid").choice(all))];
+}
+
+/// The body that make() makes; what is wrong with it is said of `value`.
+template <class Make>
+std::shared_ptr<const Polyhedron> made_of(const JsonValue& value, const Make& make) {
+    try {
+        return std::make_shared<const Polyhedron>(make());
+    } catch (const Error& error) {
+        value.fail(error);
+    }
+}
+
+std::shared_ptr<const Polyhedron> read_planes(const JsonValue& value) {
+    constexpr size_t most_planes = 1024;
+    const std::string expected = "a plane [nx, ny, nz, d]";
+    std::vector<BodyPlane> planes;
+    const size_t count = value.array_size(4, "an array of at least four planes [nx, ny, nz, d]");
+    if (count > most_planes) value.fail_expected(fmt::format("an array of at most {} planes", most_planes));
+    for (size_t i = 0; i < count; ++i) {
+        const JsonValue plane = value.item(i);
+        if (plane.array_size(4, expected) != 4) plane.fail_expected(expected);
+        std::array<double, 4> numbers;
+        for (size_t k = 0; k < 4; ++k)
+            numbers[k] = plane.item(k).number({"planes", KeyType::number, vertex_key().range});
+        planes.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3]});
+        if (planes.back().normal == glm::dvec3(0))
+            plane.fail("the normal is 0", "give the direction in which the face looks");
+    }
+    return made_of(value, [&] { return body_of_planes("convex solid", planes); });
+}
+
+std::shared_ptr<const Polyhedron> read_points(const JsonValue& value) {
+    std::vector<glm::dvec3> points;
+    const size_t count = value.array_size(4, "an array of at least four points [x, y, z]");
+    for (size_t i = 0; i < count; ++i) points.push_back(value.item(i).point(vertex_key()));
+    return made_of(value, [&] { return hull_of("convex solid", points); });
+}
+
+/// The body of a solid that is not Platonic.
+std::shared_ptr<const Polyhedron> read_body(JsonObject& keys, const KeyTable& table) {
+    if (&table == &box_keys) {
+        glm::dvec3 size;
+        keys.read("size", size);
+        return made_of(keys.at("size"), [&] { return box_body(size); });
+    }
+    if (&table == &prism_keys) {
+        const auto kind = static_cast<PolygonBody>(keys.read_choice("solid"));
+        int sides = 0;
+        double radius = 1;
+        double height = 1;
+        keys.read("sides", sides);
+        keys.read("radius", radius);
+        keys.read("height", height);
+        return made_of(keys.at("sides"), [&] { return body_over_polygon(kind, sides, radius, height); });
+    }
+    const bool by_planes = keys.has("planes");
+    const bool by_points = keys.has("points");
+    if (by_planes && by_points) keys.value().fail("expected one of 'planes' and 'points', found both");
+    if (!by_planes && !by_points) keys.value().fail("expected one of the keys 'planes' and 'points'");
+    return by_planes ? read_planes(keys.at("planes")) : read_points(keys.at("points"));
+}
+
 void read_solid(const JsonValue& value, const ObjectContext& context, ObjectDescription& object) {
-    SolidObject solid;
-    JsonObject keys(value, solid_keys);
+    const KeyTable& table = table_of_solid(value);
+    JsonObject keys(value, table);
     read_common(keys, context, object);
-    solid.solid = static_cast<PlatonicSolid>(keys.read_choice("solid"));
-    solid_fields(solid, [&](std::string_view key, auto& field) { keys.read(key, field); });
+    const int kind = keys.read_choice("solid");
+    if (&table == &sphere_keys) {
+        SphereObject sphere;
+        solid_fields(sphere, [&](std::string_view key, auto& field) { keys.read(key, field); });
+        keys.finish();
+        object.shape = sphere;
+        return;
+    }
+    SolidObject solid;
+    if (&table != &solid_keys)
+        solid.body = read_body(keys, table);
+    else if (kind <= static_cast<int>(PlatonicSolid::icosahedron))
+        solid.solid = static_cast<PlatonicSolid>(kind);
+    else
+        solid.body = archimedean_body(table.find("solid")->choices[static_cast<size_t>(kind)]);
+    keys.read("center", solid.center);
+    keys.read("rotate", solid.rotation);
+    if (&table == &solid_keys) keys.read("radius", solid.radius);
+    if (&table == &convex_keys) keys.read("scale", solid.radius);
     if (keys.has("edge_lights")) solid.edge_lights = read_edge_lights(keys.at("edge_lights"));
     keys.finish();
     refuse_texture(keys, context, object, "a solid has no uv for it; use triangles with 'uvs' or a mesh");
@@ -123,23 +215,25 @@ void read_mesh(const JsonValue& value, const ObjectContext& context, ObjectDescr
 
 struct Form {
     const char* key;  // the key that identifies the form
-    const KeyTable& keys;
+    std::span<const KeyTable* const> tables;
     void (*read)(const JsonValue&, const ObjectContext&, ObjectDescription&);
 };
 
+const KeyTable* const sheet_tables[] = {&quad_keys, &triangles_keys, &mesh_keys};
 const Form forms[] = {
-    {"solid", solid_keys, read_solid},
-    {"quad", quad_keys, read_quad},
-    {"triangles", triangles_keys, read_triangles},
-    {"mesh", mesh_keys, read_mesh},
+    {"solid", solid_tables, read_solid},
+    {"quad", std::span(sheet_tables).subspan(0, 1), read_quad},
+    {"triangles", std::span(sheet_tables).subspan(1, 1), read_triangles},
+    {"mesh", std::span(sheet_tables).subspan(2, 1), read_mesh},
 };
 
 /// Throws for an object with no form's key, most likely because it is misspelled.
 [[noreturn]] void fail_without_form(const JsonValue& value) {
     std::vector<std::string_view> known;
     for (const Form& form : forms)
-        for (const std::string_view name : form.keys.names())
-            if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+        for (const KeyTable* table : form.tables)
+            for (const std::string_view name : table->names())
+                if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
     for (const auto& member : value.json().items())
         if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
             value.fail_at(value.place_of(member.key()), "unknown key", suggestion(member.key(), known, "keys"));

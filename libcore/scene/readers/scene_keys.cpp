@@ -18,7 +18,28 @@ constexpr Range size{least_length, most};
 constexpr Range share{0, 1};
 constexpr Range angle{-most_angle, most_angle};
 
-constexpr std::string_view solid_choices[] = {"tetrahedron", "cube", "octahedron", "dodecahedron", "icosahedron"};
+constexpr std::string_view sphere_choices[] = {"sphere"};
+constexpr std::string_view solid_choices[] = {"tetrahedron",
+                                              "cube",
+                                              "octahedron",
+                                              "dodecahedron",
+                                              "icosahedron",
+                                              "truncated-tetrahedron",
+                                              "cuboctahedron",
+                                              "truncated-cube",
+                                              "truncated-octahedron",
+                                              "rhombicuboctahedron",
+                                              "truncated-cuboctahedron",
+                                              "snub-cube",
+                                              "icosidodecahedron",
+                                              "truncated-dodecahedron",
+                                              "truncated-icosahedron",
+                                              "rhombicosidodecahedron",
+                                              "truncated-icosidodecahedron",
+                                              "snub-dodecahedron"};
+constexpr std::string_view box_choices[] = {"box"};
+constexpr std::string_view convex_choices[] = {"convex"};
+constexpr std::string_view prism_choices[] = {"prism", "antiprism", "pyramid"};
 constexpr std::string_view filter_choices[] = {"nearest", "bilinear"};
 constexpr std::string_view falloff_choices[] = {"none", "inverse-square"};
 
@@ -101,11 +122,14 @@ constexpr Key cylindrical_list[] = {
 };
 
 constexpr Range repeats{0, 1e6, true};
+constexpr std::string_view wrap_choices[] = {"repeat", "clamp", "mirror"};
+constexpr Key wrap{"wrap", KeyType::other, {}, {}, false, wrap_choices};  // one, or two
 
 constexpr Key texture_file_list[] = {
     text("file", required),
     choice("filter", filter_choices, "\"bilinear\""),
     pair("repeat", repeats, "[1, 1]"),
+    wrap,
     optional_choice("colorspace", color_encoding_names),
     boolean("strict", "false"),
 };
@@ -113,6 +137,7 @@ constexpr Key texture_file_list[] = {
 constexpr Key texture_checker_list[] = {
     other("checker", required),
     pair("repeat", repeats, "[1, 1]"),
+    wrap,
 };
 
 constexpr Key sky_gradient_list[] = {
@@ -141,6 +166,49 @@ constexpr Key solid_list[] = {
     choice("solid", solid_choices, {}),
     point("center", anywhere, "[0, 0, 0]"),
     number("radius", size, "1"),
+    point("rotate", angle, "[0, 0, 0]"),
+    text("material", required),
+    other("edge_lights"),
+};
+
+constexpr Key sphere_list[] = {
+    text("name"),
+    choice("solid", sphere_choices, {}),
+    point("center", anywhere, "[0, 0, 0]"),
+    number("radius", size, "1"),
+    point("rotate", angle, "[0, 0, 0]"),
+    text("material", required),
+};
+
+constexpr Key box_list[] = {
+    text("name"),
+    choice("solid", box_choices, {}),
+    point("size", size, {}),
+    point("center", anywhere, "[0, 0, 0]"),
+    point("rotate", angle, "[0, 0, 0]"),
+    text("material", required),
+    other("edge_lights"),
+};
+
+constexpr Key convex_list[] = {
+    text("name"),
+    choice("solid", convex_choices, {}),
+    other("planes"),
+    other("points"),
+    point("center", anywhere, "[0, 0, 0]"),
+    number("scale", size, "1"),
+    point("rotate", angle, "[0, 0, 0]"),
+    text("material", required),
+    other("edge_lights"),
+};
+
+constexpr Key prism_list[] = {
+    text("name"),
+    choice("solid", prism_choices, {}),
+    whole("sides", {3, 255}, {}, required),
+    number("radius", size, "1"),
+    number("height", size, "1"),
+    point("center", anywhere, "[0, 0, 0]"),
     point("rotate", angle, "[0, 0, 0]"),
     text("material", required),
     other("edge_lights"),
@@ -211,6 +279,10 @@ constexpr KeyTable sky_gradient_keys{"sky_gradient", sky_gradient_list};
 constexpr KeyTable sky_picture_keys{"sky_picture", sky_picture_list};
 constexpr KeyTable material_keys{"material", material_list};
 constexpr KeyTable solid_keys{"solid", solid_list};
+constexpr KeyTable sphere_keys{"sphere", sphere_list};
+constexpr KeyTable box_keys{"box", box_list};
+constexpr KeyTable convex_keys{"convex", convex_list};
+constexpr KeyTable prism_keys{"prism", prism_list};
 constexpr KeyTable edge_lights_keys{"edge_lights", edge_lights_list};
 constexpr KeyTable quad_keys{"quad", quad_list};
 constexpr KeyTable triangles_keys{"triangles", triangles_list};
@@ -219,7 +291,6 @@ constexpr KeyTable mesh_keys{"mesh", mesh_list};
 constexpr KeyTable light_keys{"light", light_list};
 constexpr KeyTable frame_keys{"frame", frame_list};
 constexpr KeyTable keyed_keys{"keyed", keyed_list};
-constexpr std::span<const std::string_view> platonic_names{solid_choices};
 
 std::span<const KeyTable* const> all_key_tables() {
     static constexpr const KeyTable* tables[] = {&scene_keys,
@@ -233,6 +304,9 @@ std::span<const KeyTable* const> all_key_tables() {
                                                  &sky_picture_keys,
                                                  &material_keys,
                                                  &solid_keys,
+                                                 &box_keys,
+                                                 &convex_keys,
+                                                 &prism_keys,
                                                  &edge_lights_keys,
                                                  &quad_keys,
                                                  &triangles_keys,

@@ -56,8 +56,9 @@ struct KeyTable {
 };
 
 extern const KeyTable scene_keys, film_keys, camera_keys, path_keys, cylindrical_keys, texture_file_keys,
-    texture_checker_keys, sky_gradient_keys, sky_picture_keys, material_keys, solid_keys, edge_lights_keys, quad_keys,
-    triangles_keys, triangle_list_keys, mesh_keys, light_keys, frame_keys, keyed_keys;
+    texture_checker_keys, sky_gradient_keys, sky_picture_keys, material_keys, solid_keys, sphere_keys, box_keys,
+    convex_keys, prism_keys, edge_lights_keys, quad_keys, triangles_keys, triangle_list_keys, mesh_keys, light_keys,
+    frame_keys, keyed_keys;
 
 /// Calls visit(key, field) for each field of a material that stands under a key of its own, in the order of these.
 template <class Material, class Visit>
@@ -85,9 +86,9 @@ void light_fields(Light& light, const Visit& visit) {
     visit("visible", light.visible);
 }
 
-/// Calls visit(key, field) for each field of a Platonic solid.
-template <class Platonic, class Visit>
-void solid_fields(Platonic& solid, const Visit& visit) {
+/// Calls visit(key, field) for each field of a solid that is named, or of a sphere.
+template <class Solid, class Visit>
+void solid_fields(Solid& solid, const Visit& visit) {
     visit("center", solid.center);
     visit("radius", solid.radius);
     visit("rotate", solid.rotation);
@@ -122,9 +123,6 @@ inline constexpr std::string_view comment_key = "$comment";
 
 /// All of the tables above.
 std::span<const KeyTable* const> all_key_tables();
-
-/// Names of the Platonic solids, in the order of the enumeration PlatonicSolid.
-extern const std::span<const std::string_view> platonic_names;
 
 /// The shortest decimal text of a number, with "1e30" rather than "1e+30".
 std::string number_text(double value);

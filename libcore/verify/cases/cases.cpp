@@ -2,6 +2,8 @@
 
 namespace cistula::verify {
 
+void add_balls(Cases& cases);
+void add_bodies(Cases& cases);
 void add_contact(Cases& cases);
 void add_digits(Cases& cases);
 void add_geometry(Cases& cases);
@@ -23,6 +25,8 @@ const std::vector<Case>& all_cases() {
             cases.group = group;
             cases_of(cases);
         };
+        add("balls/", add_balls);
+        add("bodies/", add_bodies);
         add("contact/", add_contact);
         add("digits/", add_digits);
         add("geometry/", add_geometry);

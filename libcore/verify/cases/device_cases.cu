@@ -4,6 +4,7 @@
 #include "backend_cuda/host/cuda_resources.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/scene_arena.h"
+#include "verify/cases/balls/paths.h"
 #include "verify/cases/geometry/edges.h"
 #include "verify/cases/geometry/special_rays.h"
 #include "verify/cases/metamorphic/rays.h"
@@ -154,6 +155,9 @@ DeviceMethods<Real> device_methods() {
 #define CISTULA_ON_DEVICES(Functor)                                 \
     template DeviceMethods<float> device_methods<Functor, float>(); \
     template DeviceMethods<double> device_methods<Functor, double>();
+CISTULA_ON_DEVICES(balls::Bounces)
+CISTULA_ON_DEVICES(balls::Focus)
+CISTULA_ON_DEVICES(balls::Outline)
 CISTULA_ON_DEVICES(geometry::AxisParallel)
 CISTULA_ON_DEVICES(geometry::Coincident)
 CISTULA_ON_DEVICES(geometry::Degenerate)

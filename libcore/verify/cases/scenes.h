@@ -138,7 +138,7 @@ void for_each_point(SceneDescription& scene, const Change& change) {
 
 /// The corners of a solid and the points at k/16 of its edges.
 inline std::vector<glm::dvec3> edge_points(const SolidObject& solid) {
-    const PlatonicShape& shape = platonic_shape(solid.solid);
+    const Polyhedron& shape = polyhedron_of(solid);
     const std::vector<glm::dvec3> corners = triangulated_solid(solid).vertices;
     std::vector<glm::dvec3> points = corners;
     for (const auto& edge : shape.edges)
@@ -152,12 +152,13 @@ inline std::vector<glm::dvec3> edge_points(const SolidObject& solid) {
 /// Appends outward unit normals and distances of a solid's faces in the frame, four numbers each (chord in
 /// setup.h).
 inline void add_planes(const SolidObject& solid, const PartFrame& frame, Numbers& numbers) {
-    const PlatonicShape& shape = platonic_shape(solid.solid);
+    const Polyhedron& shape = polyhedron_of(solid);
     const Rotation rotation(solid.rotation);
     const glm::dvec3 center = frame.point(solid.center);
     for (const auto& face : shape.faces) {
         const glm::dvec3 n = rotation(face.normal);
-        numbers.insert(numbers.end(), {n.x, n.y, n.z, dot(n, center) + shape.inradius * solid.radius * frame.factor});
+        const double offset = offset_of(shape, face) * solid.radius * frame.factor;
+        numbers.insert(numbers.end(), {n.x, n.y, n.z, dot(n, center) + offset});
     }
 }
 inline void add_vector(const glm::dvec3& v, Numbers& numbers) {
@@ -189,22 +190,29 @@ inline std::vector<Placement> placements() {
             {"2^-20 beside a unit one", {1.5, 0.25, -0.125}, 0x1p-20, true}};
 }
 
-/// A scene with a Platonic solid at a placement, and the solid's index.
+/// A scene with a solid at a placement, and the solid's index.
 struct PlacedSolid {
     SceneDescription scene;
     SolidObject solid;
     uint32_t number;
     std::string label;
 };
-inline PlacedSolid placed_solid(PlatonicSolid kind, Shape shape, const Placement& placement,
+inline PlacedSolid placed_solid(SolidObject solid, Shape shape, const Placement& placement,
                                 const glm::dvec3& rotation) {
-    PlacedSolid placed{empty_scene(), solid_object(kind, placement.center, placement.radius, rotation), 0, ""};
-    if (placement.beside_unit) add_solid(placed.scene, shape, solid_object(kind, glm::dvec3(0), 1, rotation));
+    solid.rotation = rotation;
+    PlacedSolid placed{empty_scene(), solid, 0, ""};
+    placed.solid.center = placement.center;
+    placed.solid.radius = placement.radius;
+    if (placement.beside_unit) add_solid(placed.scene, shape, solid);
     placed.number = uint32_t(placed.scene.objects.size());
     add_solid(placed.scene, shape, placed.solid);
-    placed.label = std::string(platonic_name(kind)) + shape_name(shape) + ", " + placement.name +
+    placed.label = polyhedron_of(solid).name + shape_name(shape) + ", " + placement.name +
                    (rotation == glm::dvec3(0) ? "" : ", turned");
     return placed;
+}
+inline PlacedSolid placed_solid(PlatonicSolid kind, Shape shape, const Placement& placement,
+                                const glm::dvec3& rotation) {
+    return placed_solid(solid_object(kind), shape, placement, rotation);
 }
 
 }  // namespace cistula::verify

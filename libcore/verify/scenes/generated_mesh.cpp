@@ -107,7 +107,7 @@ TrianglesObject prism(uint32_t sides, double low, double high, double height) {
 }
 
 TrianglesObject star(double inner, double outer) {
-    const PlatonicShape& shape = platonic_shape(PlatonicSolid::icosahedron);
+    const Polyhedron& shape = platonic_shape(PlatonicSolid::icosahedron);
     TrianglesObject object;
     for (const dvec3& p : shape.vertices) object.vertices.push_back(inner * p);
     for (const auto& face : shape.faces) {
@@ -141,7 +141,7 @@ TrianglesObject triangle_soup(uint32_t triangles, double size, uint64_t seed) {
 TrianglesObject triangulated_solid(const SolidObject& solid) {
     TrianglesObject object;
     object.vertices = world_vertices(solid);
-    object.triangles = triangulated(platonic_shape(solid.solid));
+    object.triangles = triangulated(polyhedron_of(solid));
     object.keep_triangles = true;
     return object;
 }

@@ -12,7 +12,7 @@ namespace cistula::generated {
 namespace {
 
 /// The mirror image of a solid at one of its faces, with exactly the same corners there.
-TrianglesObject beyond_face(const SolidObject& solid, const PlatonicShape::Face& face) {
+TrianglesObject beyond_face(const SolidObject& solid, const Polyhedron::Face& face) {
     TrianglesObject mesh = triangulated_solid(solid);
     const dvec3 normal = Rotation(solid.rotation)(face.normal);
     const dvec3 on = mesh.vertices[face.vertices[0]];
@@ -33,7 +33,19 @@ SolidObject cube(const dvec3& center, double radius, const dvec3& rotation) {
     return {.solid = PlatonicSolid::cube, .center = center, .radius = radius, .rotation = rotation};
 }
 
-using Shape = std::variant<SolidObject, TrianglesObject, MeshObject>;
+/// A body that is no Platonic solid and reaches no farther than 1 from the origin.
+std::shared_ptr<const Polyhedron> other_body(size_t number) {
+    static const std::shared_ptr<const Polyhedron> bodies[] = {
+        std::make_shared<Polyhedron>(box_body({1.3, 0.9, 0.7})),
+        archimedean_body("truncated-cube"),
+        std::make_shared<Polyhedron>(body_over_polygon(PolygonBody::prism, 7, 0.7, 1.2)),
+        archimedean_body("snub-dodecahedron"),
+        std::make_shared<Polyhedron>(body_over_polygon(PolygonBody::antiprism, 5, 0.7, 1)),
+        std::make_shared<Polyhedron>(body_over_polygon(PolygonBody::pyramid, 4, 0.8, 1.1))};
+    return bodies[number % std::size(bodies)];
+}
+
+using Shape = decltype(ObjectDescription::shape);
 
 /// Adds a floor, walls and sheets, then groups of closed bodies, with their materials.
 class Objects : Part {
@@ -136,7 +148,8 @@ class Objects : Part {
                 for (uint32_t z = 0; z < nz; ++z) {
                     dvec3 center = 1.3 * dvec3(x - 0.5 * (nx - 1), y - 0.5 * (ny - 1), z);
                     if (!lattice) center += random_.in_cube(0.1);
-                    const SolidObject s = solid(center, random_.between(0.2, 0.52));
+                    SolidObject s = solid(center, random_.between(0.2, 0.52));
+                    if (scene_.objects.size() % 3 == 2) s.body = other_body(scene_.objects.size() / 3);
                     cores_.push_back({s.center, s.radius});
                     centers_.push_back(s.center);
                     add(s, true);
@@ -151,7 +164,7 @@ class Objects : Part {
             Shape shape = closed(at, radius);
             if (const auto* s = std::get_if<SolidObject>(&shape)) {
                 cores_.push_back({at, radius});
-                radius *= 0.95 * platonic_shape(s->solid).inradius;
+                radius *= 0.95 * polyhedron_of(*s).inradius;
             } else {
                 radius *= 0.45;
             }
@@ -242,6 +255,8 @@ class Objects : Part {
         const bool picture = random_.chance(0.5);
         const bool marble = random_.chance(0.5);
         t.bilinear = random_.chance(0.6);
+        const size_t number = scene_.textures.size();
+        t.wrap = {TextureWrap(number % 3), TextureWrap(number / 2 % 3)};
         if (picture && !files_.empty()) t.file = files_ + (marble ? "/marble.data" : "/floor.data");
         scene_.textures.push_back(t);
         return static_cast<int>(scene_.textures.size()) - 1;

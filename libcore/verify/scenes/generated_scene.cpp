@@ -54,10 +54,11 @@ class Maker : Part {
         }
         if (kind < 4)
             if (const SolidObject* s = any_shape<SolidObject>()) {
-                const auto& shape = platonic_shape(s->solid);
+                const Polyhedron& shape = polyhedron_of(*s);
                 const uint32_t face = random_.below(static_cast<uint32_t>(shape.faces.size()));
                 if (random_.chance(0.25)) return world_vertices(*s)[shape.faces[face].vertices[0]];
-                return s->center + Rotation(s->rotation)(s->radius * shape.inradius * shape.faces[face].normal);
+                return s->center + Rotation(s->rotation)(s->radius * offset_of(shape, shape.faces[face]) *
+                                                         shape.faces[face].normal);
             }
         if (kind < 6)
             if (const TrianglesObject* mesh = any_shape<TrianglesObject>()) {

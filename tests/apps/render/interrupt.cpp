@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "base/atomic_file.h"
 #include "scene/description/mesh_source.h"
 #include "testing/support/render_program.h"
 #include "verify/scenes/generated_scene.h"
@@ -34,8 +35,8 @@ TEST(InterruptDeathTest, TheFirstSignalSetsTheFlag) {
             {
                 default_signals();
                 std::atomic<bool> stop{false};
-                InterruptGuard guard;
-                guard.watch(stop);
+                const InterruptGuard guard("render");
+                const StopOnInterrupt watch(stop);
                 const bool before = stop;
                 std::raise(number);
                 report(!before && stop);
@@ -43,19 +44,37 @@ TEST(InterruptDeathTest, TheFirstSignalSetsTheFlag) {
             testing::ExitedWithCode(0), "");
 }
 
-TEST(InterruptDeathTest, TheSecondSignalKills) {
+TEST(InterruptDeathTest, TheSecondSignalEndsTheProgramAtOnce) {
     for (const int number : {SIGINT, SIGTERM, SIGHUP})
         EXPECT_EXIT(
             {
                 default_signals();
                 std::atomic<bool> stop{false};
-                InterruptGuard guard;
-                guard.watch(stop);
+                const InterruptGuard guard("render");
+                const StopOnInterrupt watch(stop);
                 std::raise(SIGINT);
                 std::raise(number);
                 report(false);
             },
-            testing::KilledBySignal(number), "");
+            testing::ExitedWithCode(130), "");
+}
+
+TEST(InterruptDeathTest, NoTemporaryIsLeft) {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.file("a.txt");
+    EXPECT_EXIT(
+        {
+            default_signals();
+            const InterruptGuard guard("render-merge");
+            std::atomic<bool> stop{false};
+            { const StopOnInterrupt watch(stop); }  // watches no more
+            const AtomicFile file(path);
+            if (scratch.names().empty()) report(false);
+            std::raise(SIGTERM);
+            report(false);
+        },
+        testing::ExitedWithCode(130), "render-merge: interrupted");
+    EXPECT_TRUE(scratch.names().empty());
 }
 
 /// Sends this process a signal from another one.
@@ -70,8 +89,8 @@ TEST(InterruptDeathTest, ABrokenPipeIsNoInterruptionButSigpipeOfOthersIs) {
         {
             default_signals();
             std::atomic<bool> stop{false};
-            InterruptGuard guard;
-            guard.watch(stop);
+            const InterruptGuard guard("render");
+            const StopOnInterrupt watch(stop);
             int ends[2];
             bool good = pipe(ends) == 0 && close(ends[0]) == 0;
             good &= write(ends[1], "x", 1) < 0 && errno == EPIPE && !stop;
@@ -85,11 +104,11 @@ TEST(InterruptDeathTest, BeforeAnythingRendersItEndsTheProgramAtOnce) {
     EXPECT_EXIT(
         {
             default_signals();
-            InterruptGuard guard;
+            const InterruptGuard guard("render");
             std::raise(SIGINT);
             report(false);
         },
-        testing::ExitedWithCode(130), "render: interrupted; nothing was written");
+        testing::ExitedWithCode(130), "render: interrupted");
 }
 
 TEST(InterruptDeathTest, IgnoredSignalsStayIgnored) {
@@ -98,8 +117,8 @@ TEST(InterruptDeathTest, IgnoredSignalsStayIgnored) {
             default_signals();
             std::signal(SIGINT, SIG_IGN);
             std::atomic<bool> stop{false};
-            InterruptGuard guard;
-            guard.watch(stop);
+            const InterruptGuard guard("render");
+            const StopOnInterrupt watch(stop);
             std::raise(SIGINT);
             report(!stop);
         },
@@ -110,7 +129,7 @@ TEST(InterruptDeathTest, TheOldDispositionComesBack) {
     EXPECT_EXIT(
         {
             default_signals();
-            { InterruptGuard guard; }
+            { const InterruptGuard guard("render"); }
             std::raise(SIGTERM);
             report(false);
         },

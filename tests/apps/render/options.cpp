@@ -249,23 +249,15 @@ TEST(RequestKeys, AreReadFromJsonAsFromText) {
 
 TEST(RenderOptions, HelpNamesEveryOptionAndExitCode) {
     const std::string help = help_text();
-    for (const char* part : {"--output",       "--frames",
-                             "--backend",      "--res",
-                             "--crop",         "--supersample",
-                             "--depth",        "--cutoff",
-                             "--precision",    "--threads",
-                             "--lanes",        "--bits",
-                             "--preview",      "--exposure",
-                             "--view",         "--bloom",
-                             "--layers",       "--split",
-                             "--explain",      "--pixel",
-                             "--json",         "--effects",
-                             "--stats",        "--resume",
-                             "--progress",     "--quiet",
-                             "--verbose",      "--help",
-                             "--device ",      "--list-devices",
-                             "--version",      "--print-template",
-                             "Examples:",      "Exit codes: 0 done",
+    for (const char* part : {"--output",       "--frames",         "--backend",    "--res",
+                             "--crop",         "--supersample",    "--depth",      "--cutoff",
+                             "--precision",    "--threads",        "--lanes",      "--bits",
+                             "--preview",      "--exposure",       "--view",       "--bloom",
+                             "--layers",       "--split",          "--explain",    "--pixel",
+                             "--json",         "--explore",        "--explore-mb", "--effects",
+                             "--stats",        "--resume",         "--progress",   "--quiet",
+                             "--verbose",      "--help",           "--device ",    "--list-devices",
+                             "--version",      "--print-template", "Examples:",    "Exit codes: 0 done",
                              "130 interrupted"})
         EXPECT_NE(help.find(part), std::string::npos) << part;
 }

@@ -414,5 +414,11 @@ TEST_F(PixelReports, FailWhereThePixelCannotBeTrusted) {
                     .contains("cannot_be_trusted"));
 }
 
+/// Memory for trees has a bound.
+TEST_F(PixelReports, RefuseToFollowRaysWithoutEnd) {
+    expect_refused({CISTULA_SOURCE_DIR "/scenes/hard/furnace.json", "--pixel", "30,27", "--depth", "1024"},
+                   ExitCode::failed, "the pixel's rays branch too often to be followed one by one");
+}
+
 }  // namespace
 }  // namespace cistula

@@ -149,6 +149,17 @@ TEST_F(SceneFiles, RedirectedStreamsAreFilesToo) {
               "render: log: would be both standard error and --stats; give each a file of its own\n");
 }
 
+TEST_F(SceneFiles, SoIsTheConfigOfColors) {
+    put_bytes(file("c.ocio"), "mine");
+    const ProgramResult result =
+        RunningProgram(program_, {"s.json", "-o", "o.exr", "--stats", "c.ocio"}, file(""), "", [&] {
+            setenv("OCIO", file("c.ocio").c_str(), 1);
+        }).wait();
+    EXPECT_EQ(result.code, 2);
+    EXPECT_NE(result.error.find("c.ocio: would be both the config that $OCIO names and --stats"), std::string::npos);
+    EXPECT_EQ(bytes_of(file("c.ocio")), "mine");
+}
+
 TEST_F(SceneFiles, FramesAreFilesOfTheirOwn) {
     expect_done({"s.json", "-q", "-o", "a.#.exr"});
     fs::remove(file("a.2.exr"));

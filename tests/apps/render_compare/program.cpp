@@ -160,6 +160,38 @@ TEST_F(RenderCompare, FoldersAndSequencesAreComparedByNamesAndNumbers) {
     expect_refused({"c.##.exr", "a/f.##.exr"}, ExitCode::file, "c.##.exr: has no images");
 }
 
+/// Where no window is the same, headers decide.
+TEST_F(RenderCompare, ValuesThatCannotCountAreNotRead) {
+    LayeredPicture other = picture_of({first_r});
+    put("a.exr", other);
+    other.x = 6;
+    put("b.exr", other);
+    for (const char* name : {"a.exr", "b.exr"}) {
+        const std::string bytes = bytes_of(file(name));
+        put_bytes(file(name), bytes.substr(0, bytes.size() - 10));  // of the pixels
+    }
+    EXPECT_TRUE(contains(expect_code(1, {"a.exr", "b.exr"}), "data window: 4x2+5+7 / 4x2+6+7\n"));
+    expect_refused({"a.exr", "b.exr", "--intersection"}, ExitCode::file, "a.exr: cannot read");
+}
+
+/// Every output against every input, by other names.
+TEST_F(RenderCompare, NoOutputIsAnInput) {
+    std::filesystem::create_directory(file("d"));
+    for (const char* name : {"a.exr", "b.exr", "m.exr", "d/1.exr"}) put(name, picture_of({first_r}));
+    std::filesystem::create_symlink(file("a.exr"), file("link.exr"));
+    const std::string bytes = bytes_of(file("a.exr"));
+    const Arguments images = {"a.exr", "b.exr", "--mask", "m.exr"};
+    for (const char* option : {"--diff", "--json"})
+        for (const char* input : {"a.exr", "./b.exr", "d/../m.exr", "link.exr"}) {
+            Arguments words = images;
+            words.insert(words.end(), {option, input});
+            expect_refused(words, ExitCode::usage, "would be both");
+        }
+    expect_refused({"d", "d", "--json", "d/1.exr"}, ExitCode::usage, "would be both an image and --json");
+    expect_refused({"d/#.exr", "d/#.exr", "--json", "d/1.exr"}, ExitCode::usage, "would be both an image and --json");
+    for (const char* name : {"a.exr", "b.exr", "m.exr", "d/1.exr"}) EXPECT_EQ(bytes_of(file(name)), bytes) << name;
+}
+
 TEST_F(RenderCompare, JsonGoesToStandardOutputWhereItIsAsked) {
     put("a.exr", picture_of({first_r}));
     put("b.exr", picture_of({second_r}));

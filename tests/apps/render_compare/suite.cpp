@@ -374,6 +374,7 @@ TEST_F(SuiteProgram, AnInterruptionLeavesWhatIsKnown) {
                            {"suite", "s", "--junit", "r.xml", "--json", "r.json", "--html", "page"}, file(""));
     ASSERT_TRUE(program.wait_until(
         [&] { return program.output_so_far().find("none.exr is not there") != std::string::npos; }, 60));
+    program.send(SIGUSR1);  // is render's alone
     program.send(SIGTERM);
     const auto start = std::chrono::steady_clock::now();
     const ProgramResult result = program.wait();

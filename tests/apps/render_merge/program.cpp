@@ -108,6 +108,39 @@ TEST_F(RenderMerge, FilesOfLayersAreMergedToo) {
                     "t.N.2.exr: 1 of its 4 tiles is missing: t.tile3.N.2.exr; render --tiles 2x2 --tile 3 -f 2");
 }
 
+TEST_F(RenderMerge, FilesOfOtherRendersBesideAreRefusedOrLeftAlone) {
+    // Layers of another render are refused before anything is written.
+    render_tiles("t.exr", "2x1", 2, {"--layers", "reflection", "--split", "files", "--depth", "2"});
+    render_tiles("t.exr", "2x1", 2, {"--layers", "diffuse", "--split", "files"});
+    expect_no_merge({"--tiles", "2x1", "-o", "t.exr"}, ExitCode::failed,
+                    "t.tile0.reflection.exr: cistula:depth is 2, and 6 in t.tile0.exr");
+    EXPECT_FALSE(exists("t.exr") || exists("t.diffuse.exr") || exists("t.reflection.exr"));
+    // The tiles of a film, and files that are no layers, are none of a still's.
+    render_tiles("a.exr", "2x1", 2, {"--layers", "diffuse", "--split", "files"});
+    render_tiles("a.####.exr", "2x1", 2, {"-f", "0-1"});
+    for (const char* name : {"a.0000.exr", "a.tile0.notes.exr", "a.tile0.snapshot.exr"}) put_bytes(file(name), "mine");
+    std::filesystem::remove(file("a.tile1.0001.exr"));
+    expect_merged({"--tiles", "2x1", "-o", "a.exr", "-q"});
+    EXPECT_TRUE(exists("a.exr") && exists("a.diffuse.exr"));
+    EXPECT_EQ(bytes_of(file("a.0000.exr")), "mine");
+    EXPECT_FALSE(exists("a.0001.exr") || exists("a.notes.exr"));
+}
+
+/// What a header claims is checked before there is memory for it.
+TEST_F(RenderMerge, ClaimsOfHeadersCostNothing) {
+    render_tiles("t.exr", "2x1", 1, {});
+    std::vector<PicturePart> parts = read_exr_parts(file("t.tile0.exr"));
+    parts[0].picture.display_width = parts[0].picture.display_height = 65536;
+    write_exr(file("t.tile0.exr"), parts);
+    const ProgramResult result =
+        RunningProgram("/bin/sh",
+                       {"-c", "ulimit -v 2000000; exec " CISTULA_BIN_DIR "/render-merge t.tile0.exr -o o.exr"},
+                       file(""))
+            .wait();
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.error.find("of 4294967296 pixels are in no tile"), std::string::npos) << result.error;
+}
+
 TEST_F(RenderMerge, CropsAndPreviews) {
     const Arguments crop{"--crop", "23x17+9+4"};
     expect_done({"s.json", "-q", "-o", "w.exr", "--crop", "23x17+9+4"});

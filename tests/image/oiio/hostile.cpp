@@ -85,6 +85,11 @@ TEST(HostilePictures, DdsWithoutAnEnd) {
     // OpenImageIO 2.4 looks for the first bit of a mask without end.
     EXPECT_EQ(outcome(reader, "a.dds", bombs::dds(4, 4, "", 0) + std::string(48, '\x81')),
               "its header gives a channel no bits: a mask is 0");
+    // It goes over as many levels as the header says.
+    std::string levels = bombs::dds(4, 4, "DXT1") + std::string(8, '\0');
+    levels[10] |= 2;  // it has levels
+    levels.replace(28, 4, "\xff\xff\xff\x7f");
+    EXPECT_EQ(outcome(reader, "a.dds", levels), "its header says that it has 2147483647 levels of a mip map");
 }
 
 TEST(HostilePictures, FilesThatAreCutOff) {

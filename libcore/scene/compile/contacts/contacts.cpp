@@ -25,10 +25,10 @@ constexpr uint32_t no_body = 0xffffffffu;
 class ContactSearch {
   public:
     ContactSearch(const SceneSource& source, const SceneNormalization& normalization,
-                  const std::vector<ConvexSolid>& platonic, const std::vector<MeshSize>& sizes)
+                  const std::vector<ConvexSolid>& polyhedra, const std::vector<MeshSize>& sizes)
         : source_(source),
           normalization_(normalization),
-          platonic_(platonic),
+          polyhedra_(polyhedra),
           sizes_(sizes),
           range_(source, normalization),
           rounding_(4 * RealTraits<double>::unit * normalization.extent),
@@ -56,9 +56,9 @@ class ContactSearch {
     void find_bodies() {
         const auto count = uint32_t(source_.solids.size());
         std::vector<const ConvexSolid*> planes(count, nullptr);
-        size_t next_platonic = 0;
+        size_t next_polyhedron = 0;
         for (uint32_t i = 0; i < count; ++i)
-            if (source_.solids[i].platonic) planes[i] = &platonic_[next_platonic++];
+            if (source_.solids[i].polyhedron) planes[i] = &polyhedra_[next_polyhedron++];
         std::vector<Box> boxes(count);
         tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
             boxes[i] = planes[i] ? planes[i]->box : sizes_[i].box;
@@ -95,7 +95,7 @@ class ContactSearch {
         const auto add_faces = [&](size_t first, size_t end, std::vector<FlatFace>& faces) {
             for (size_t b = first; b < end; ++b)
                 if (const ContactBody& body = bodies_[b]; body.planes)
-                    add_platonic_faces(body, *source_.solids[body.solid].platonic, faces);
+                    add_polyhedron_faces(body, *source_.solids[body.solid].polyhedron, faces);
                 else if (joined)
                     add_mesh_faces(body, body.near, body.reach.own, faces);
                 else
@@ -137,10 +137,12 @@ class ContactSearch {
         reach.given = range_.given;
         reach.rounding = solid.mesh.rounding;
         double thickness = solid.closed ? 3 * solid.thickness * normalization_.factor : sizes_[number].half_width;
-        if (const SolidObject* platonic = solid.platonic) {
-            thickness = platonic_shape(platonic->solid).inradius * platonic->radius * normalization_.factor;
+        if (const SolidObject* polyhedron = solid.polyhedron) {
+            const Polyhedron& body = polyhedron_of(*polyhedron);
+            thickness = body.inradius * polyhedron->radius * normalization_.factor;
+            const double of_size = half_unit_of(polyhedron->radius) * body.reach + polyhedron->radius * body.half_unit;
             for (int axis = 0; axis < 3; ++axis)
-                reach.rounding.half_unit[axis] = half_unit_of(platonic->center[axis]) + half_unit_of(platonic->radius);
+                reach.rounding.half_unit[axis] = half_unit_of(polyhedron->center[axis]) + of_size;
         }
         reach.rounding.half_unit *= normalization_.factor;
         reach.most = 0x1p-10 * thickness;
@@ -162,7 +164,7 @@ class ContactSearch {
         body.planes = planes;
         if (planes) {
             body.points = planes->vertices;
-            body.facets = triangulated(platonic_shape(from.platonic->solid));
+            body.facets = triangulated(polyhedron_of(*from.polyhedron));
         } else {
             body.points.reserve(from.mesh.vertices.size());
             for (const dvec3& p : from.mesh.vertices) body.points.push_back(normalization_.point(p));
@@ -331,7 +333,7 @@ class ContactSearch {
         const FlatFace& face = faces_[number];
         const ContactBody& of = body(face);
         std::vector<std::array<dvec3, 3>> triangles;
-        if (source_.solids[face.solid].platonic) {
+        if (source_.solids[face.solid].polyhedron) {
             for (size_t i = 1; i + 1 < face.corners.size(); ++i)
                 triangles.push_back(
                     {of.points[face.corners[0]], of.points[face.corners[i]], of.points[face.corners[i + 1]]});
@@ -454,7 +456,7 @@ class ContactSearch {
 
     const SceneSource& source_;
     const SceneNormalization& normalization_;
-    const std::vector<ConvexSolid>& platonic_;
+    const std::vector<ConvexSolid>& polyhedra_;
     const std::vector<MeshSize>& sizes_;
     ContactRange range_;
     const double rounding_;  // what lies as near to a plane lies in it
@@ -507,8 +509,8 @@ std::vector<std::string> contact_warnings(const SceneSource& source, const Scene
 }
 
 Contacts find_contacts(const SceneSource& source, const SceneNormalization& normalization,
-                       const std::vector<ConvexSolid>& platonic, const std::vector<MeshSize>& sizes) {
-    return ContactSearch(source, normalization, platonic, sizes).run();
+                       const std::vector<ConvexSolid>& polyhedra, const std::vector<MeshSize>& sizes) {
+    return ContactSearch(source, normalization, polyhedra, sizes).run();
 }
 
 }  // namespace cistula

@@ -222,8 +222,8 @@ void add_triangles(const ContactBody& body, const std::vector<uint32_t>& triangl
         if (FlatFace face = face_of(body, {t}); face.area > 0) faces.push_back(std::move(face));
 }
 
-void add_platonic_faces(const ContactBody& body, const SolidObject& solid, std::vector<FlatFace>& faces) {
-    for (const PlatonicShape::Face& from : platonic_shape(solid.solid).faces) {
+void add_polyhedron_faces(const ContactBody& body, const SolidObject& solid, std::vector<FlatFace>& faces) {
+    for (const Polyhedron::Face& from : polyhedron_of(solid).faces) {
         FlatFace face{};
         face.solid = body.solid;
         face.parts = {from.id};

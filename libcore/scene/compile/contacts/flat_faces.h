@@ -87,7 +87,7 @@ std::array<glm::dvec3, 3> points_of(const ContactBody& body, uint32_t facet);
 void add_triangles(const ContactBody& body, const std::vector<uint32_t>& triangles, std::vector<FlatFace>& faces);
 
 /// The faces of a Platonic solid; if it was moved, as its corners say.
-void add_platonic_faces(const ContactBody& body, const SolidObject& solid, std::vector<FlatFace>& faces);
+void add_polyhedron_faces(const ContactBody& body, const SolidObject& solid, std::vector<FlatFace>& faces);
 
 /// The largest distance of a face's corners from a plane.
 double farthest_from(const glm::dvec3& normal, double offset, const ContactBody& body, const FlatFace& face);

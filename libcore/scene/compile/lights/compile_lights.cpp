@@ -12,11 +12,11 @@ using glm::dvec3;
 
 void add_edge_lights(std::vector<NormalizedLight>& lights, const SourceSolid& from, const ConvexSolid& solid,
                      int convex, const SceneNormalization& normalization, LightGroups& groups) {
-    const SolidObject& object = *from.platonic;
+    const SolidObject& object = *from.polyhedron;
     const EdgeLights& on_edges = object.edge_lights;
     if (on_edges.count == 0) return;
     const std::string group = groups.of_edges(on_edges, name_of(from));
-    for (const auto& edge : platonic_shape(object.solid).edges) {
+    for (const auto& edge : polyhedron_of(object).edges) {
         const dvec3 &a = solid.vertices[edge.vertices[0]], &b = solid.vertices[edge.vertices[1]];
         for (int i = 0; i < on_edges.count; ++i) {
             const double s = (i + 1.0) / (on_edges.count + 1.0);
@@ -77,7 +77,7 @@ std::vector<NormalizedLight> normalize_lights(const SceneSource& source, const S
     }
     for (size_t i = 0; i < convex.size(); ++i) {
         const SourceSolid& solid = source.solids[convex[i].solid];
-        if (!solid.platonic) continue;
+        if (!solid.polyhedron) continue;
         add_edge_lights(lights, solid, convex[i], static_cast<int>(i), normalization, groups);
     }
     // I / r^2 in scene units is I 4^scale / r^2 with r in the frame.

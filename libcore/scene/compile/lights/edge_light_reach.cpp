@@ -17,6 +17,7 @@ SlabGroup<Real>& first_group(CompiledScene<Real>& scene, uint32_t solid) {
 template <class Real>
 bool stands_apart(CompiledScene<Real>& scene, uint32_t solid) {
     return std::all_of(scene.convex.begin(), scene.convex.end(), [&](uint32_t other) {
+        if (is_ball(scene.solids[other])) return true;
         const double lights = double(first_group(scene, other).light_square);
         if (other == solid || !(lights > 0)) return true;
         const Vec3<double> between =
@@ -35,6 +36,7 @@ void reach_edge_lights(CompiledScene<Real>& scene, const std::vector<uint32_t>& 
     for (const uint32_t solid : scene.convex)
         known = known && scene.solids[solid].slab_count <= most_slabs_of_edge_lights;
     for (const uint32_t solid : scene.convex) {
+        if (is_ball(scene.solids[solid])) continue;
         first_group(scene, solid).light_reach = known ? Real(0) : RealTraits<Real>::infinity;
         first_group(scene, solid).light_square = -RealTraits<Real>::infinity;
     }
@@ -49,6 +51,7 @@ void reach_edge_lights(CompiledScene<Real>& scene, const std::vector<uint32_t>& 
         group.light_square = max_or_second(Real(far * far) + Real(sphere_padding), group.light_square);
     }
     for (const uint32_t solid : scene.convex) {
+        if (is_ball(scene.solids[solid])) continue;
         SlabGroup<Real>& group = first_group(scene, solid);
         group.lights_apart = group.light_reach > Real(0) && stands_apart(scene, solid);
     }

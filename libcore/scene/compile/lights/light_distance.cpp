@@ -134,6 +134,15 @@ std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& l
     return distances;
 }
 
+std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& lights, const PlacedBall& ball,
+                                           double extent, double rounding) {
+    std::vector<LightDistance> distances;
+    for (uint32_t i = 0; i < lights.size(); ++i)
+        if (is_near(lights[i], distance_to_box(ball.box(), lights[i].position), extent))
+            distances.push_back({i, ball.distance(lights[i].position) - rounding});
+    return distances;
+}
+
 std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh,
                                            const Groups& groups, const Tree& tree, uint32_t solid,
                                            uint32_t first_triangle, const LightFaces& faces, double extent,

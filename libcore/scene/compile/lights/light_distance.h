@@ -26,6 +26,10 @@ double distance_to_box(const Box& box, const glm::dvec3& p);
 std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& lights, const ConvexSolid& solid,
                                            const LightFaces& faces, double extent, double rounding);
 
+/// The distances of lights from a ball's surface.
+std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& lights, const PlacedBall& ball,
+                                           double extent, double rounding);
+
 /// The distances of lights from a mesh's triangles, found through the tree over their groups; they may be stated as
 /// half of what they are.
 std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh,

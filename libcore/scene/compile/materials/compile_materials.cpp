@@ -41,8 +41,10 @@ void append_texture(TextureSet& set, const TextureDescription& description, cons
     texture.height = picture.height;
     texture.filter =
         description.bilinear && !description.is_checker() ? TextureFilter::bilinear : TextureFilter::nearest;
-    texture.repeat[0] = description.repeat.x;
-    texture.repeat[1] = description.repeat.y;
+    for (int axis = 0; axis < 2; ++axis) {
+        texture.repeat[axis] = description.repeat[axis];
+        texture.wrap[axis] = description.wrap[static_cast<size_t>(axis)];
+    }
     set.textures.push_back(texture);
     set.largest.push_back(largest);
 }

@@ -16,7 +16,8 @@ struct MaterialUse {
     const MaterialDescription* material = nullptr;
     std::string place;    // "/objects/2"
     bool closed = true;   // it has an inside
-    bool convex = false;  // a solid given by planes; else triangles
+    bool convex = false;  // a solid given by planes, or a sphere; else triangles
+    bool round = false;   // a sphere
 };
 
 /// The reasons for all effects, in bit order. `uses` in file order; the lights considered give light or are visible.

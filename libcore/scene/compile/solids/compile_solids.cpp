@@ -24,28 +24,18 @@ std::vector<glm::dvec3> ConvexSolid::face_corners(uint32_t face) const {
                                            16 * RealTraits<double>::unit * reach);
     for (const glm::dvec3& p : vertices)
         if (magnitude(dot(pair.normal, p) - offset) <= tolerance) corners.push_back(p);
-    glm::dvec3 middle(0);
-    for (const glm::dvec3& p : corners) middle += p / double(corners.size());
-    const glm::dvec3 right = corners.empty() ? glm::dvec3(0) : corners[0] - middle;
-    const glm::dvec3 up = cross(face % 2 == 1 ? pair.normal : -pair.normal, right);
-    const auto angle = [&](const glm::dvec3& p) {  // not in radians, but in the same order: from -2 to 2
-        const double x = dot(right, p - middle);
-        const double y = dot(up, p - middle);
-        const double sum = magnitude(x) + magnitude(y);
-        return x >= 0 ? y / sum : y >= 0 ? 2 - y / sum : -2 - y / sum;
-    };
-    std::sort(corners.begin(), corners.end(),
-              [&](const glm::dvec3& a, const glm::dvec3& b) { return angle(a) < angle(b); });
+    sort_around(face % 2 == 1 ? pair.normal : -pair.normal, corners, [](const glm::dvec3& p) { return p; });
     return corners;
 }
 
 ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const SceneNormalization& normalization) {
-    const PlatonicShape& shape = platonic_shape(object.solid);
+    const Polyhedron& shape = polyhedron_of(object);
     const Rotation rotation(object.rotation);
     const glm::dvec3 center = normalization.point(object.center);
     const double radius = object.radius * normalization.factor;
     ConvexSolid solid;
     solid.solid = number;
+    solid.flatness = radius * shape.flatness;
     for (const glm::dvec3& p : shape.vertices) {
         solid.vertices.push_back(center + rotation(radius * p));
         solid.box.add(solid.vertices.back());
@@ -53,8 +43,7 @@ ConvexSolid convex_solid(const SolidObject& object, uint32_t number, const Scene
     for (const auto& planes : shape.planes) {
         const glm::dvec3 normal = rotation(planes.normal);
         const double middle = dot(normal, center);
-        const double half = radius * shape.inradius;
-        solid.planes.push_back({normal, planes.single ? -INFINITY : middle - half, middle + half});
+        solid.planes.push_back({normal, middle + radius * planes.low, middle + radius * planes.high});
     }
     return solid;
 }

@@ -43,22 +43,24 @@ PlacedBodies::PlacedBodies(const SceneSource& source) : normalization(find_norma
     tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
         source.stop.check();
         const SourceSolid& solid = source.solids[i];
-        if (solid.platonic)
-            by_planes[i] = convex_solid(*solid.platonic, i, normalization);
-        else
+        if (solid.polyhedron)
+            by_planes[i] = convex_solid(*solid.polyhedron, i, normalization);
+        else if (solid.is_mesh())
             sizes[i] = mesh_size(solid.mesh, normalization, least_share(Precision::double_) * normalization.extent);
     });
-    std::vector<ConvexSolid> platonic;
+    for (uint32_t i = 0; i < count; ++i)
+        if (source.solids[i].sphere) balls.emplace_back(*source.solids[i].sphere, i, normalization);
+    std::vector<ConvexSolid> polyhedra;
     for (std::optional<ConvexSolid>& solid : by_planes)
-        if (solid) platonic.push_back(std::move(*solid));
+        if (solid) polyhedra.push_back(std::move(*solid));
     source.stop.check();
-    contacts = find_contacts(source, normalization, platonic, sizes);
-    move_vertices(platonic, contacts);
+    contacts = find_contacts(source, normalization, polyhedra, sizes);
+    move_vertices(polyhedra, contacts);
     tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
         source.stop.check();
-        if (!source.solids[i].platonic) by_planes[i] = convex_mesh(source, i, normalization, contacts);
+        if (!source.solids[i].polyhedron) by_planes[i] = convex_mesh(source, i, normalization, contacts);
     });
-    for (ConvexSolid& solid : platonic) by_planes[solid.solid] = std::move(solid);
+    for (ConvexSolid& solid : polyhedra) by_planes[solid.solid] = std::move(solid);
     for (std::optional<ConvexSolid>& solid : by_planes)
         if (solid) convex.push_back(std::move(*solid));
     for (ConvexSolid& solid : convex) bind_slabs(solid);

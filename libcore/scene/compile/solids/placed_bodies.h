@@ -9,15 +9,17 @@
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/contacts/contacts.h"
 #include "scene/compile/meshes/normalized_mesh.h"
+#include "scene/compile/solids/compile_balls.h"
 #include "scene/compile/solids/compile_solids.h"
 
 namespace cistula {
 
 struct PlacedBodies {
     SceneNormalization normalization;
-    std::vector<MeshSize> sizes;  // of each solid's mesh; of a Platonic solid nothing
+    std::vector<MeshSize> sizes;  // of each solid's mesh; of other solids nothing
     Contacts contacts;
     std::vector<ConvexSolid> convex;  // the solids that are given by planes, by number; in contact as contacts say
+    std::vector<PlacedBall> balls;    // by number
 
     explicit PlacedBodies(const SceneSource& source);
 

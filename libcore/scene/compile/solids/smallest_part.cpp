@@ -48,14 +48,16 @@ class SmallestPartSearch {
     void add_solids() {
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
             const SourceSolid& solid = source_.solids[i];
-            if (!solid.platonic) {
+            if (solid.sphere) continue;
+            if (!solid.polyhedron) {
                 add_mesh(i);
                 continue;
             }
-            const double radius = solid.platonic->radius * normalization_.factor;
-            add(platonic_shape(solid.platonic->solid).inradius * radius,
-                [&] { return name(solid) + ": its inradius"; });
+            const double radius = solid.polyhedron->radius * normalization_.factor;
+            add(polyhedron_of(*solid.polyhedron).inradius * radius, [&] { return name(solid) + ": its inradius"; });
         }
+        for (const PlacedBall& ball : bodies_.balls)
+            add(ball.radius, [&] { return name(source_.solids[ball.solid]) + ": its radius"; });
     }
 
     void add_mesh(uint32_t number) {
@@ -102,8 +104,9 @@ class SmallestPartSearch {
                 }
                 add_distance(magnitude(beyond), solid.solid, light);
             }
+            for (const PlacedBall& ball : bodies_.balls) add_distance(ball.distance(light.position), ball.solid, light);
             for (uint32_t i = 0; i < source_.solids.size(); ++i) {
-                if (source_.solids[i].platonic || has_planes(i) || apart(at, bodies_.sizes[i].box, range_)) continue;
+                if (!source_.solids[i].is_mesh() || has_planes(i) || apart(at, bodies_.sizes[i].box, range_)) continue;
                 add_distance(distance_to_triangles(source_.solids[i].mesh, normalization_, light.position,
                                                    tolerance(i, light), range_),
                              i, light);

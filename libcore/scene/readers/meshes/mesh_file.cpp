@@ -133,7 +133,7 @@ MeshData mesh_data(std::vector<PolygonMesh> groups) {
     return data;
 }
 
-MeshData read_mesh(const std::string& file) {
+MeshData read_mesh(const std::string& file, StopSignal stop) {
     const std::string kind = lower_extension(file);
     const std::string label = "mesh " + file;
     if (kind != ".ply" && kind != ".obj") throw Error(ErrorKind::file, "", "must be a .ply or an .obj file").at(label);
@@ -147,9 +147,9 @@ MeshData read_mesh(const std::string& file) {
         const bool is_obj = kind == ".obj";
         const std::string bytes = utf8_of(is_obj ? text_bytes(file, label) : ply_bytes(file, label));
         if (is_obj)
-            groups = read_obj(bytes, label, surroundings_of(file, files), warnings);
+            groups = read_obj(bytes, label, surroundings_of(file, files), warnings, stop);
         else
-            groups.push_back(read_ply(bytes, label, warnings));
+            groups.push_back(read_ply(bytes, label, warnings, stop));
     }
     if (std::none_of(groups.begin(), groups.end(), has_faces))
         throw Error(ErrorKind::file, "has no faces", "give a file with polygons").at(label);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "scene/description/description.h"
 #include "scene/description/mesh_source.h"
 #include "scene/readers/meshes/polygon_mesh.h"
@@ -21,8 +22,8 @@ struct MeshPart {
 /// What was read of a mesh file, whose v counts from the bottom of the picture, as a mesh.
 MeshData mesh_data(std::vector<PolygonMesh> groups);
 
-/// Reads a mesh file: groups in file order, with a polygon at least. Throws Error (file) that names it.
-MeshData read_mesh(const std::string& file);
+/// Reads a mesh file: groups in file order, with a polygon at least. Throws Error: (file) that names it, (interrupted).
+MeshData read_mesh(const std::string& file, StopSignal stop = {});
 
 /// The triangles of a mesh, in file order, rotated, scaled and translated. Polygons that are there twice and groups
 /// without triangles are left out.

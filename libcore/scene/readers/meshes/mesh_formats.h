@@ -8,11 +8,15 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "scene/description/description.h"
 #include "scene/readers/meshes/mesh_text.h"
 #include "scene/readers/meshes/polygon_mesh.h"
 
 namespace cistula {
+
+/// So many statements of an OBJ, or rows of a PLY, are read before the signal to stop is looked at.
+constexpr uint32_t rows_between_stops = 1 << 14;
 
 /// The files that an OBJ names, by their names in it.
 struct ObjSurroundings {
@@ -26,7 +30,7 @@ struct ObjSurroundings {
 /// Throws Error(file): `label`, which names the file, then the line, what is wrong and what would be right. Adds
 /// warnings that name missing files and materials, and what has no meaning here.
 std::vector<PolygonMesh> read_obj(std::string_view bytes, const std::string& label, const ObjSurroundings& surroundings,
-                                  std::vector<std::string>& warnings);
+                                  std::vector<std::string>& warnings, StopSignal stop = {});
 
 /// A material as an OBJ names it, before its library is read.
 MaterialDescription default_obj_material(const std::string& name);
@@ -47,6 +51,7 @@ void check_ply_start(std::string_view start, const std::string& label);
 
 /// The mesh in a PLY file's bytes, with all of its vertices in file order. Throws Error(file): `label`, which names the
 /// file, then the line or the byte, what is wrong and what would be right. Adds a warning where vertices have normals.
-PolygonMesh read_ply(std::string_view bytes, const std::string& label, std::vector<std::string>& warnings);
+PolygonMesh read_ply(std::string_view bytes, const std::string& label, std::vector<std::string>& warnings,
+                     StopSignal stop = {});
 
 }  // namespace cistula

@@ -25,6 +25,7 @@ struct Statements {
     std::optional<double> d, Tr;
     dvec3 Tf{1};
     int illum = 1;
+    std::string map_Kd;
 };
 
 /// Whether a Tf is a color to filter by: black and white are what exporters write where they have nothing to say.
@@ -44,6 +45,7 @@ MaterialDescription material_of(const std::string& name, const Statements& from)
     MaterialDescription m;
     m.name = name;
     m.color = from.Kd;
+    m.map = from.map_Kd;
     m.exponent = from.Ns;
     if (from.Ni > 0) m.index = from.Ni;
     m.transmission = from.d ? 1 - *from.d : from.Tr.value_or(0);
@@ -171,6 +173,7 @@ class MtlReader {
             }
         }
         const std::string file(lines_.rest(i));
+        if (key == "map_Kd") material_->map_Kd = file;
         if (!file.empty() && key != "map_aat" && !has_map_(file)) library_.missing_maps.add(file);
     }
 

@@ -37,11 +37,14 @@ struct LargestIndex {
 class ObjReader {
   public:
     ObjReader(std::string_view text, const std::string& label, const ObjSurroundings& surroundings,
-              std::vector<std::string>& warnings)
-        : lines_(text), label_(label), surroundings_(surroundings), warnings_(warnings) {}
+              std::vector<std::string>& warnings, StopSignal stop)
+        : lines_(text), label_(label), surroundings_(surroundings), warnings_(warnings), stop_(stop) {}
 
     std::vector<PolygonMesh> read() {
-        while (lines_.next()) read_statement(lines_.words()[0]);
+        for (uint32_t statement = 0; lines_.next(); ++statement) {
+            if (statement % rows_between_stops == 0) stop_.check();
+            read_statement(lines_.words()[0]);
+        }
         check_largest(largest_vertex_, positions_.size(), "vertex");
         check_largest(largest_uv_, uvs_.size(), "texture coordinate");
         read_libraries();
@@ -194,6 +197,7 @@ class ObjReader {
     const std::string& label_;
     const ObjSurroundings& surroundings_;
     std::vector<std::string>& warnings_;
+    const StopSignal stop_;
     std::vector<dvec3> positions_;
     std::vector<dvec2> uvs_;
     LargestIndex largest_vertex_, largest_uv_;
@@ -210,8 +214,8 @@ class ObjReader {
 }  // namespace
 
 std::vector<PolygonMesh> read_obj(std::string_view text, const std::string& label, const ObjSurroundings& surroundings,
-                                  std::vector<std::string>& warnings) {
-    return ObjReader(text, label, surroundings, warnings).read();
+                                  std::vector<std::string>& warnings, StopSignal stop) {
+    return ObjReader(text, label, surroundings, warnings, stop).read();
 }
 
 }  // namespace cistula

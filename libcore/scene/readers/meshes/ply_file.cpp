@@ -61,7 +61,8 @@ struct Element {
 
 class PlyReader {
   public:
-    PlyReader(std::string_view bytes, const std::string& label) : bytes_(bytes), label_(label) {
+    PlyReader(std::string_view bytes, const std::string& label, StopSignal stop = {})
+        : bytes_(bytes), label_(label), stop_(stop) {
         // Where a CR alone ends the first line, it ends all; else a LF does, with a CR before it or without.
         const size_t end = bytes.find_first_of("\r\n");
         if (end != std::string_view::npos && bytes[end] == '\r' && bytes.substr(end + 1, 1) != "\n") line_end_ = '\r';
@@ -225,6 +226,7 @@ class PlyReader {
         const std::vector<Property>& properties = element_->properties;
         std::vector<double> values;
         for (uint64_t row = 0; row < element_->count && !properties.empty(); ++row) {
+            if (row % rows_between_stops == 0) stop_.check();
             while (ascii_ && word_ == words_.size())
                 if (!next_line()) fail("the file ends before the element does: it is cut short");
             for (size_t p = 0; p < properties.size(); ++p) {
@@ -317,6 +319,7 @@ class PlyReader {
 
     std::string_view bytes_;
     const std::string& label_;
+    const StopSignal stop_;
     char line_end_ = '\n';
     bool ascii_ = true;
     bool big_endian_ = false;
@@ -340,8 +343,9 @@ void check_ply_start(std::string_view start, const std::string& label) {
     PlyReader(start, label).read_first_line();
 }
 
-PolygonMesh read_ply(std::string_view bytes, const std::string& label, std::vector<std::string>& warnings) {
-    return PlyReader(bytes, label).read(warnings);
+PolygonMesh read_ply(std::string_view bytes, const std::string& label, std::vector<std::string>& warnings,
+                     StopSignal stop) {
+    return PlyReader(bytes, label, stop).read(warnings);
 }
 
 }  // namespace cistula

@@ -47,7 +47,7 @@ class Site {
     }
     /// The site of a solid that stands on one of its faces, at the origin.
     Site(const SolidObject& solid, size_t face) : Site(Ground{{0, 0, 0}, {0, 0, 0}}) {
-        const PlatonicShape& shape = platonic_shape(solid.solid);
+        const Polyhedron& shape = platonic_shape(solid.solid);
         const Rotation rotation(solid.rotation);
         const auto& standing = shape.faces[face];
         z_ = -rotation(standing.normal);

@@ -62,8 +62,8 @@ struct Unnoted {
 template <class Real, class Tracer>
 CISTULA_NOINLINE void trace(const Setup<Real>& setup, const Tracer& intersector, const Ray<Real>& ray,
                             Lines<Real>& lines) {
-    using Glass =
-        Effects<effect_reflection | effect_transmission | effect_refraction | effect_insides | effect_contacts>;
+    using Glass = Effects<effect_reflection | effect_transmission | effect_refraction | effect_insides |
+                          effect_contacts | effect_solids | effect_triangles | effect_spheres>;
     using Stack = StackOf<Real, Glass, InteriorList>;
     using Tree = RayTree<Real, Glass, Watched<Real, Tracer>, Stack>;
     TreeSettings settings;
@@ -351,8 +351,9 @@ CISTULA_HD inline bool pass_slab(const Setup<Real>& setup, const Tracer& interse
           ray.lines);
     const Lines<Real>& lines = ray.lines;
     tally.expect(lines.flags == 0 && lines.count >= 3);
-    const bool through = lines.whole() && lines.count == 3 && lines.first[1].found() &&
-                         magnitude(dot(normal_at(setup.scene, lines.first[1]), Vec3<Real>(ray.normal))) > Real(0.5);
+    const bool through =
+        lines.whole() && lines.count == 3 && lines.first[1].found() &&
+        magnitude(dot(normal_at(setup.scene, Ray<Real>(), lines.first[1]), Vec3<Real>(ray.normal))) > Real(0.5);
     if (through) tally.witness(true);
     return through;
 }

@@ -255,7 +255,7 @@ constexpr Prism prisms[] = {{PlatonicSolid::tetrahedron, 1.5},
                             {PlatonicSolid::icosahedron, 1.04}};
 
 void prism_numbers(const SolidObject& solid, double index, const PartFrame& frame, Numbers& numbers) {
-    const PlatonicShape& shape = platonic_shape(solid.solid);
+    const Polyhedron& shape = platonic_shape(solid.solid);
     const Rotation rotation(solid.rotation);
     const auto& edge = shape.edges[0];
     const auto normal_of = [&](uint32_t id) {

@@ -17,13 +17,13 @@ struct OnSolid {
 
 /// The faces of a solid that a test holds of, as bits.
 template <class Holds>
-uint32_t face_bits(const PlatonicShape& shape, const Holds& holds) {
+uint32_t face_bits(const Polyhedron& shape, const Holds& holds) {
     uint32_t bits = 0;
     for (uint32_t f = 0; f < shape.faces.size(); ++f) bits |= uint32_t(holds(shape.faces[f])) << f;
     return bits;
 }
 
-std::vector<OnSolid> places_on(const PlatonicShape& shape) {
+std::vector<OnSolid> places_on(const Polyhedron& shape) {
     const auto faces_of = [&](uint32_t vertex) {
         return face_bits(shape, [=](const auto& face) {
             return std::count(face.vertices.begin(), face.vertices.end(), vertex) != 0;
@@ -109,7 +109,7 @@ void plan_edge_lights(Plan& plan) {
 /// Lights between two touching cubes of planes or triangles, and at the border of the shared face.
 void plan_lights_in_contact(Plan& plan) {
     const double half_diagonal = 0.86602540378443864676;  // half the diagonal of a cube of side 1
-    const PlatonicShape& shape = platonic_shape(PlatonicSolid::cube);
+    const Polyhedron& shape = platonic_shape(PlatonicSolid::cube);
     for (int shapes = 0; shapes < 4; ++shapes)
         for (const bool glass : {false, true}) {
             const std::vector<SolidObject> solids = {solid_object(PlatonicSolid::cube, {-0.5, 0, 0}, half_diagonal),

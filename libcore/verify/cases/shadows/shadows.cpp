@@ -20,7 +20,7 @@ namespace {
 /// Eight lights around a body, four far ones, and twelve that graze its faces: in the frame the lowest is 2^-18 of the
 /// radius over the plane of a face.
 void add_lights_around(SceneDescription& scene, const SolidObject& body) {
-    const PlatonicShape& shape = platonic_shape(body.solid);
+    const Polyhedron& shape = platonic_shape(body.solid);
     const Rotation turned(body.rotation);
     for (uint32_t k = 0; k < 12; ++k) {
         const double z = (2.0 * k + 1) / 12 - 1;
@@ -110,7 +110,7 @@ void plan_falloff(Plan& plan) {
 
 /// Lights inside a solid: in the middle, near its faces, edges and corners.
 void add_lights_inside(SceneDescription& scene, const SolidObject& solid) {
-    const PlatonicShape& shape = platonic_shape(solid.solid);
+    const Polyhedron& shape = platonic_shape(solid.solid);
     const Rotation turned(solid.rotation);
     const auto add = [&](const glm::dvec3& p) { add_light(scene, solid.center + turned(p) * solid.radius); };
     const auto& edge = shape.edges.back();

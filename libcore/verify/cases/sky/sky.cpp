@@ -69,6 +69,7 @@ SceneDescription under_picture(const dvec3& rotation, bool far = false) {
     SceneDescription scene = scene_under(sky, far);
     scene.textures.emplace_back();
     scene.textures.back().texels = texels;
+    scene.textures.back().wrap[1] = TextureWrap::clamp;
     return scene;
 }
 /// Its color in a direction; none at the seam and beside the poles, where texels do not go on linearly.

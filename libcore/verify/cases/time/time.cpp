@@ -58,17 +58,21 @@ void depth(Stage& stage, Tally& tally) {
 constexpr const char* still_bodies = R"(, {"solid": "dodecahedron", "material": "mirror", "rotate": [10, 20, 30]},
     {"quad": [[-9, -9, -2], [9, -9, -2], [9, 9, -2], [-9, 9, -2]], "material": "plain"})";
 
-/// A body that flies about behind the camera, where nothing shows it.
-const std::string unseen = R"({"solid": "cube", "material": "plain",
-    "center": {"keys": [[0, [0, 0, 30]], [5, [7, 1, 90]], [9, [-3, 40, 31]]], "interpolation": "smooth"},
-    "rotate": {"keys": [[0, [0, 0, 0]], [9, [100, 200, 300]]]}})";
+/// A body that flies about behind the camera, where nothing shows it: in double so far off that rounding of what is
+/// seen would show in a picture.
+std::string unseen(const Stage& stage) {
+    const std::string zeros = stage.in_double() ? "00000000" : "";
+    return R"({"solid": "cube", "material": "plain", "center": {"keys": [[0, [0, 0, 30)" + zeros + "]], [5, [7" +
+           zeros + ", 1" + zeros + ", 90" + zeros + "]], [9, [-3" + zeros + ", 40" + zeros + ", 31" + zeros +
+           R"(]]], "interpolation": "smooth"}, "rotate": {"keys": [[0, [0, 0, 0]], [9, [100, 200, 300]]]}})";
+}
 
 /// What stands still while a body moves that is not seen: the same bits in all frames.
 Render at_rest(bool in_one_frame) {
     return [=](Stage& stage, Tally& tally) {
         Film first;
         for (int frame = 0; frame < 10; ++frame) {
-            SceneDescription scene = scene_at(unseen, frame, still_bodies);
+            SceneDescription scene = scene_at(unseen(stage), frame, still_bodies);
             if (!in_one_frame) scene.motion = nullptr;
             const Film film = stage.film(scene);
             if (frame == 0)

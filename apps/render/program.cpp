@@ -9,6 +9,7 @@
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/programs.h"
 #include "apps/common/progress_record.h"
 #include "apps/common/render_options.h"
 #include "apps/common/sequence_progress.h"
@@ -18,6 +19,7 @@
 #include "base/stages.h"
 #include "explain.h"
 #include "image/exr/exr.h"
+#include "render/explorer/explorer.h"
 #include "render/pixel_report.h"
 #include "scene/compile/materials/required_effects.h"
 #include "scene/readers/scene_formats.h"
@@ -87,7 +89,7 @@ class ToldSequence : public SequenceProgress {
 
     void planned(const FrameSettings& settings) override {
         memory_advice_ = advice_on_memory(request_, settings);
-        guard_.emplace().watch(stop_);
+        watch_.emplace(stop_);
     }
 
     void ready(const RunStats& stats) override {
@@ -118,13 +120,13 @@ class ToldSequence : public SequenceProgress {
     const RenderRequest& request_;
     std::atomic<bool>& stop_;
     std::string& memory_advice_;
-    std::optional<InterruptGuard> guard_;
+    std::optional<StopOnInterrupt> watch_;
 };
 
 void render_scene(const RenderRequest& request, std::string& memory_advice) {
     SnapshotRequests snapshots;
     const UserSignal user_signal(snapshots);
-    RenderProgress progress;  // must outlive the guard
+    RenderProgress progress;  // must outlive what watches
     ToldSequence told(request, progress, memory_advice);
     on_threads(request, [&] { render_sequence(request, told, progress, &snapshots); });
 }
@@ -145,9 +147,8 @@ void measure_scene(const RenderRequest& request) {
     const ChosenDevices devices = choose_devices(request.backend, request.devices);
     const SceneDescription scene = read_frame(request);
     const FrameSettings settings = frame_settings(request, scene);
-    StepProgress progress(request.quiet ? ProgressStyle::none : request.progress);  // must outlive the guard
-    InterruptGuard guard;
-    guard.watch(progress.render.stop);
+    StepProgress progress(request.quiet ? ProgressStyle::none : request.progress);  // must outlive what watches
+    const StopOnInterrupt watch(progress.render.stop);
     on_threads(request, [&] {
         const StopSignal stop(progress.render.stop);
         SceneSource source = gather_scene(scene, stop);
@@ -185,6 +186,17 @@ void report_pixel(const RenderCommand& request, const SceneDescription& descript
                                                    request.pixel.x, request.pixel.y, flaws));
 }
 
+/// Adds a file that is written to those that the scene is read from, and makes its folder. Throws Error where it is one
+/// of them.
+void claim_output(const RenderCommand& request, const SceneSource& source, const std::string& path,
+                  const char* option) {
+    if (path.empty() || path == "-") return;
+    RunFiles files;
+    files.reads_scene(request.scene, source.files);
+    files.writes(path, option);
+    make_directory_of(path);
+}
+
 void report_pixel(const RenderCommand& request) {
     const SceneDescription scene = read_frame(request);
     const FrameSettings settings = frame_settings(request, scene);
@@ -198,13 +210,39 @@ void report_pixel(const RenderCommand& request) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<size_t>(threads_of(request)));
     SceneSource source = gather_scene(scene);
-    if (!request.json.empty() && request.json != "-") {
-        RunFiles files;
-        files.reads_scene(request.scene, source.files);
-        files.writes(request.json, "--json");
-        make_directory_of(request.json);
-    }
+    claim_output(request, source, request.json, "--json");
     report_pixel(request, scene, std::move(source), settings, camera);
+}
+
+void write_explorer(const RenderCommand& request) {
+    const SceneDescription description = read_frame(request);
+    FrameSettings settings = frame_settings(request, description);
+    const CameraFrame camera = camera_at(description.camera, request.frames.empty() ? 0 : request.frames.front());
+    RenderProgress progress;  // must outlive what watches
+    const StopOnInterrupt watch(progress.stop);
+    const StopSignal stop(progress.stop);
+    on_threads(request, [&] {
+        SceneSource source = gather_scene(description, stop);
+        claim_output(request, source, request.page, "--explore");
+        const std::vector<Wireframe> bodies = wireframes(source);
+        SceneTalk talk(request);
+        const Scene scene = compile_for(request, std::move(source), talk);
+        const auto make = [&] { return make_embree_renderer(scene); };
+        Film film;
+        render_frame(*make(), camera, settings, film, progress);
+        stop.check();
+        if (film.flags != 0)
+            throw Error(ErrorKind::failed, fmt::format("frame {} cannot be trusted: {}", camera.frame,
+                                                       describe_flags(film.flags, description)))
+                .at(description.source);
+        const Explorer explorer(scene, camera, settings);
+        const Explorer::Page page =
+            explorer.page(explorer.start(description.source, bodies, film), request.page_mb, make, stop);
+        write_output(request.page, page.html);
+        if (!request.quiet)
+            note(fmt::format("render: {}: {:.2f} MB, the rays of one pixel in {} x {}", request.page,
+                             static_cast<double>(page.html.size()) / 1e6, page.step, page.step));
+    });
 }
 
 void run(const RenderCommand& request, std::string& memory_advice) {
@@ -219,6 +257,8 @@ void run(const RenderCommand& request, std::string& memory_advice) {
             return print(with_options(list_devices_text()));
         case Action::pixel:
             return report_pixel(request);
+        case Action::explore:
+            return write_explorer(request);
         case Action::measure:
             return measure_scene(request);
         case Action::explain:
@@ -228,13 +268,31 @@ void run(const RenderCommand& request, std::string& memory_advice) {
     }
 }
 
+/// The style of --progress in a command line that may be wrong otherwise.
+ProgressStyle style_in(int argc, const char* const* argv) {
+    RenderRequest request;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        const std::string option = "--progress";
+        const std::string value = word == option && i + 1 < argc   ? argv[i + 1]
+                                  : word.starts_with(option + "=") ? word.substr(option.size() + 1)
+                                                                   : "";
+        if (value == "json" || value == "openjd") request_key("progress").set(request, value);
+    }
+    return request.progress;
+}
+
 /// Runs, and tells programs that read the progress of an error that ends it.
-void run_and_record(const RenderCommand& request, std::string& memory_advice) {
+void run_and_record(int argc, const char* const* argv, const std::function<void(SceneDescription&)>& described,
+                    std::string& memory_advice) {
     try {
-        run(request, memory_advice);
+        RenderCommand command = parse_options(argc, argv);
+        command.described = described;
+        run(command, memory_advice);
     } catch (const std::exception& error) {
         const Failure failure = failure_of(error, memory_advice);
-        const std::string lines = failure_record(request.progress, with_options(failure.text), exit_code(failure.kind));
+        const std::string lines =
+            failure_record(style_in(argc, argv), with_options(failure.text), exit_code(failure.kind));
         if (!lines.empty()) std::fputs((lines + "\n").c_str(), stdout);
         std::fflush(stdout);
         throw;
@@ -242,13 +300,13 @@ void run_and_record(const RenderCommand& request, std::string& memory_advice) {
 }
 
 }  // namespace
-}  // namespace cistula
 
-int main(int argc, char** argv) {
-    using namespace cistula;
+int render_program(int argc, const char* const* argv, const std::function<void(SceneDescription&)>& described) {
     std::string memory_advice = "a smaller --res or --crop needs less";
     return run_program("render", memory_advice, [&] {
-        run_and_record(parse_options(argc, argv), memory_advice);
+        run_and_record(argc, argv, described, memory_advice);
         return static_cast<int>(ExitCode::done);
     });
 }
+
+}  // namespace cistula

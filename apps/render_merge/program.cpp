@@ -13,8 +13,10 @@
 #include "sequence/merge.h"
 #include "sequence/run_files.h"
 
-#include <algorithm>
 #include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,8 +31,24 @@ struct FileToMerge {
     std::vector<std::string> tiles;
 };
 
+/// The names in folders, each read once.
+class Folders {
+  public:
+    const std::set<std::string>& names(const fs::path& folder) {
+        const auto [found, is_new] = names_.emplace(folder.string(), std::set<std::string>());
+        std::error_code error;
+        if (is_new)
+            for (const auto& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, error))
+                found->second.insert(entry.path().filename().string());
+        return found->second;
+    }
+
+  private:
+    std::map<std::string, std::set<std::string>> names_;
+};
+
 /// The layers that have files beside the main one of this name.
-std::vector<std::string> layers_beside(const OutputName& name, int frame) {
+std::vector<std::string> layers_beside(const OutputName& name, int frame, Folders& folders) {
     const std::string mark(1, '\1');
     const fs::path example = name.for_layer(frame, mark);
     const std::string file = example.filename().string();
@@ -38,15 +56,12 @@ std::vector<std::string> layers_beside(const OutputName& name, int frame) {
     const std::string after = file.substr(file.find(mark) + 1);
     const std::string snapshot = fs::path(snapshot_of(name, frame)).filename().string();
     std::vector<std::string> layers;
-    std::error_code error;
-    const fs::path folder = example.parent_path();
-    for (const auto& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, error)) {
-        const std::string own = entry.path().filename().string();
-        if (own.size() > before.size() + after.size() && own.starts_with(before) && own.ends_with(after) &&
-            own != snapshot)
-            layers.push_back(own.substr(before.size(), own.size() - before.size() - after.size()));
+    const std::set<std::string>& names = folders.names(example.parent_path());
+    for (auto own = names.lower_bound(before); own != names.end() && own->starts_with(before); ++own) {
+        if (own->size() <= before.size() + after.size() || !own->ends_with(after) || *own == snapshot) continue;
+        const std::string layer = own->substr(before.size(), own->size() - before.size() - after.size());
+        if (is_layer_file(name.for_layer(frame, layer), layer)) layers.push_back(layer);
     }
-    std::sort(layers.begin(), layers.end());
     return layers;
 }
 
@@ -65,7 +80,7 @@ void require_tiles(const FileToMerge& file, const TileGrid& grid, int frame) {
 
 /// The files of a frame: those of layers that have their own (--split files), found beside the first tile, then the
 /// main one. Throws Error (file) for tiles that are missing, with the option of render that makes the first of them.
-std::vector<FileToMerge> files_to_merge(const MergeOptions& options, int frame) {
+std::vector<FileToMerge> files_to_merge(const MergeOptions& options, int frame, Folders& folders) {
     FileToMerge main{options.output.for_frame(frame), options.files};
     if (!options.request.tiles) return {main};
     std::vector<OutputName> names;
@@ -73,7 +88,7 @@ std::vector<FileToMerge> files_to_merge(const MergeOptions& options, int frame) 
         names.push_back(options.output.named(tile_name(*options.request.tiles, i)));
     for (const OutputName& name : names) main.tiles.push_back(name.for_frame(frame));
     std::vector<FileToMerge> files;
-    for (const std::string& layer : layers_beside(names.front(), frame)) {
+    for (const std::string& layer : layers_beside(names.front(), frame, folders)) {
         FileToMerge& file = files.emplace_back(FileToMerge{options.output.for_layer(frame, layer), {}});
         for (const OutputName& name : names) file.tiles.push_back(name.for_layer(frame, layer));
     }
@@ -114,18 +129,23 @@ void require_different_files(const std::vector<FileToMerge>& files, const std::s
     all.writes(preview, "a preview");
 }
 
-void merge_frame(const MergeOptions& options, int frame) {
-    const std::vector<FileToMerge> files = files_to_merge(options, frame);
+void merge_frame(const MergeOptions& options, int frame, Folders& folders) {
+    const std::vector<FileToMerge> files = files_to_merge(options, frame, folders);
     const std::string preview = options.preview.for_frame(frame);
     const PixelRect& crop = options.request.frame.crop;
     require_different_files(files, preview);
+    std::vector<Merge> merges;
     for (const FileToMerge& file : files) {
-        Merge merge(crop.width > 0 ? std::optional(crop) : std::nullopt);
+        Merge& merge = merges.emplace_back(crop.width > 0 ? std::optional(crop) : std::nullopt);
         for (const std::string& tile : file.tiles) merge.add(tile);
-        const std::vector<PicturePart> whole = std::move(merge).whole();
-        if (!preview.empty() && &file == &files.back())
+        merge.check_whole();
+    }
+    for (size_t i = 0; i + 1 < merges.size(); ++i) merges[i].check_beside(merges.back());
+    for (size_t i = 0; i < files.size(); ++i) {
+        const std::vector<PicturePart> whole = std::move(merges[i]).whole();
+        if (!preview.empty() && i + 1 == files.size())
             write_merged_preview(preview, whole.front().picture, options.request.view);
-        write_exr(file.path, whole);
+        write_exr(files[i].path, whole);
     }
     if (!options.request.quiet)
         note(fmt::format("render-merge: {}: {} tiles", files.back().path, files.back().tiles.size()));
@@ -135,10 +155,11 @@ void merge(MergeOptions options) {
     const std::string warning = open_config_view(options.request.view);
     if (!warning.empty() && !options.request.quiet) note(fmt::format("render-merge: warning: {}", warning));
     set_exr_threads(tbb::this_task_arena::max_concurrency());
+    Folders folders;
     for (const int frame : options.request.frames) {
         make_directories(options.output, {frame});
         if (!options.preview.text().empty()) make_directories(options.preview, {frame});
-        merge_frame(options, frame);
+        merge_frame(options, frame, folders);
     }
 }
 
@@ -154,12 +175,12 @@ void run(const MergeOptions& options) {
 }
 
 }  // namespace
-}  // namespace cistula
 
-int main(int argc, char** argv) {
-    using namespace cistula;
+int render_merge_program(int argc, const char* const* argv) {
     return run_program("render-merge", "a whole frame is held at a time; one of fewer layers needs less", [&] {
         run(parse_merge_options(argc, argv));
         return static_cast<int>(ExitCode::done);
     });
 }
+
+}  // namespace cistula

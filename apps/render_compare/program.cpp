@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 
 #include "apps/common/command_line.h"
 #include "apps/common/interrupt.h"
+#include "apps/common/programs.h"
 #include "base/error.h"
 #include "base/file_bytes.h"
 #include "base/shown_text.h"
@@ -21,6 +23,7 @@
 #include "image/reader/picture_reader.h"
 #include "options.h"
 #include "sequence/output_name.h"
+#include "sequence/run_files.h"
 #include "suite_options.h"
 
 namespace cistula {
@@ -36,8 +39,9 @@ struct Judged {
 Judged judge_files(const CompareOptions& options, const std::string& first, const std::string& second,
                    StopSignal stop) {
     StoredReader reader;
-    const StoredFile a = reader.read(first);
-    const StoredFile b = reader.read(second);
+    const auto [a, b] = reader.read_two(first, second, [&](const StoredFile& one, const StoredFile& other) {
+        return compares_values(one, other, options.selection);
+    });
     stop.check();
     Selection selection = options.selection;
     if (!options.mask.empty()) selection.mask = mask_of(reader.read(options.mask).pictures.front());
@@ -87,8 +91,13 @@ Judged judge_several(const CompareOptions& options, StopSignal stop) {
     const std::map<std::string, std::string> first = images_of(options.a);
     const std::map<std::string, std::string> second = images_of(options.b);
     std::set<std::string> names;
+    RunFiles files;
     for (const auto* images : {&first, &second})
-        for (const auto& [name, path] : *images) names.insert(name);
+        for (const auto& [name, path] : *images) {
+            names.insert(name);
+            files.reads(path, "an image");
+        }
+    if (options.json != "-") files.writes(options.json, "--json");
     Judged all;
     all.json = {{"first", options.a}, {"second", options.b}, {"holds", true}, {"images", nlohmann::json::array()}};
     size_t held = 0;
@@ -116,8 +125,9 @@ Judged judge_several(const CompareOptions& options, StopSignal stop) {
 
 bool compare_images(const CompareOptions& options) {
     std::atomic<bool> stop = false;
-    InterruptGuard guard;  // before there are files and processes
-    guard.watch(stop);
+    std::optional<StopOnInterrupt> watch;
+    // FLIP has files and processes to leave in order; nothing else does.
+    if (options.selection.flip || options.thresholds.flip) watch.emplace(stop);
     const Judged judged =
         names_several(options.a) ? judge_several(options, stop) : judge_files(options, options.a, options.b, stop);
     const std::string json = judged.json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
@@ -158,12 +168,12 @@ int run(const CompareOptions& options) {
 }
 
 }  // namespace
-}  // namespace cistula
 
-int main(int argc, char** argv) {
-    using namespace cistula;
+int render_compare_program(int argc, const char* const* argv) {
     return run_program("render-compare", "smaller images need less", [&] {
         if (argc > 1 && std::string_view(argv[1]) == "suite") return run_suite(argc - 1, argv + 1);
         return run(parse_compare_options(argc, argv));
     });
 }
+
+}  // namespace cistula
