@@ -1,6 +1,7 @@
 // What is around a scene where that is not of one color: its radiance by direction, in double.
 #pragma once
 
+#include "cistula/model/effects.h"
 #include "cistula/model/texture.h"
 #include "cistula/numerics/trigonometry.h"
 
