@@ -45,7 +45,7 @@ void check(const SceneDescription& scene, const SceneSource& source) {
     for (const LightDescription& light : scene.lights)
         if (light.falloff || light.radius > 0) refuse("a light falls off or is seen; it must do neither");
     for (const SourceSolid& solid : source.solids)
-        if (solid.platonic && solid.platonic->edge_lights.count > 0) refuse("a solid has lights on its edges");
+        if (solid.polyhedron && solid.polyhedron->edge_lights.count > 0) refuse("a solid has lights on its edges");
 }
 
 /// Two cells a unit of uv times repeat, placed by the first triangle's uvs (a planar object has one such map).
@@ -116,8 +116,8 @@ std::string povray_scene(const SceneDescription& scene, const CameraFrame& frame
         if (light.color != dvec3(0))
             text += fmt::format("light_source {{ {} {} }}\n", vector(light.position), color(light.color));
     for (const SourceSolid& solid : source.solids) {
-        const MeshSource made = solid.platonic ? triangles_of(*solid.platonic) : MeshSource();
-        const MeshSource& mesh = solid.platonic ? made : solid.mesh;
+        const MeshSource made = solid.polyhedron ? triangles_of(*solid.polyhedron) : MeshSource();
+        const MeshSource& mesh = solid.polyhedron ? made : solid.mesh;
         text += "mesh {\n";
         for (const auto& t : mesh.triangles)
             text += fmt::format("  triangle {{ {}, {}, {} }}\n", vector(mesh.vertices[t[0]]),

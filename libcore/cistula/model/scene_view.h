@@ -232,6 +232,22 @@ struct Texture {
     double repeat[2];     // factors of uv
 };
 
+enum class SkyKind : uint32_t { none, gradient, picture };
+
+/// A color of a gradient, at an angle to its axis.
+struct SkyStop {
+    double cosine;
+    Vec3<double> color;
+};
+
+/// What is around a scene in place of a background of one color.
+struct Sky {
+    SkyKind kind = SkyKind::none;
+    uint32_t texture = 0;  // of a picture
+    double scale = 1;      // of its texels
+    Vec3<double> axes[3];  // x, y and z of a picture, unit; a gradient's axis is the last
+};
+
 /// Maximum depth of a tree, and so the size of traversal stacks.
 inline constexpr int max_tree_depth = 48;
 
@@ -287,6 +303,8 @@ struct SceneView {
     Span<uint32_t> tree_items;
     Span<LightNode> visible_light_tree;  // over visible_lights; empty where there are few
     Span<uint32_t> light_groups;         // of each of lights
+    Span<SkyStop> sky_stops;             // of a gradient
+    Sky sky;
     Vec3<Real> background;
     Vec3<Real> bound;    // radiance bound B per channel, at most 1, slack included
     Real largest_bound;  // largest component of bound

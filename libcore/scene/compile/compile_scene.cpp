@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -28,6 +31,7 @@
 #include "scene/compile/solids/compile_balls.h"
 #include "scene/compile/solids/compile_solids.h"
 #include "scene/compile/solids/placed_bodies.h"
+#include "scene/description/rotation.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {
@@ -42,6 +46,30 @@ void return_free_memory([[maybe_unused]] uint32_t triangles) {
     if (triangles >= 100'000) malloc_trim(0);
 #endif
 }
+
+}  // namespace
+
+/// What takes long for a mesh and needs nothing of others.
+struct PreparedMesh {
+    ApexHeights heights;
+    Groups groups;
+    Tree tree;  // over groups
+    ApexFaults faults;
+    Box box;
+};
+
+/// What was prepared of meshes that do not change, and the vertices that contacts gave them.
+struct MeshCache {
+    using Key = std::tuple<size_t, uint32_t, std::string, size_t>;  // object, body, part, size of numbers
+    std::mutex mutex;
+    std::map<Key, std::pair<std::vector<dvec3>, PreparedMesh>> meshes;
+};
+
+std::shared_ptr<MeshCache> new_mesh_cache() {
+    return std::make_shared<MeshCache>();
+}
+
+namespace {
 
 constexpr size_t most_pairs = 10'000'000;
 constexpr uint32_t most_outlined = 16;  // triangles of a mesh that is outlined by its corners; larger ones by their box
@@ -220,21 +248,31 @@ class Compiler {
         }
     }
 
-    /// What takes long for a mesh and needs nothing of others.
-    struct PreparedMesh {
-        ApexHeights heights;
-        Groups groups;
-        Tree tree;  // over groups
-        ApexFaults faults;
-        Box box;
-    };
-
     NormalizedMesh placed_mesh(uint32_t number) const {
         return {source_.solids[number].mesh, normalization_, bodies_.contacts.solids[number].points,
                 sizeof(Real) == sizeof(float)};
     }
 
+    /// Prepares a mesh; one that does not change, once for all frames in which contacts move the same vertices.
     PreparedMesh prepare(uint32_t number) {
+        const SourceSolid& from = source_.solids[number];
+        const MovingScene* const moving = source_.moving.get();
+        if (!moving || moving->solids[from.object].empty()) return prepared_anew(number);
+        MeshCache& cache = *moving->meshes;
+        const MeshCache::Key key{from.object, from.body, from.name, sizeof(Real)};
+        const std::vector<dvec3>& points = bodies_.contacts.solids[number].points;
+        {
+            const std::lock_guard lock(cache.mutex);
+            const auto known = cache.meshes.find(key);
+            if (known != cache.meshes.end() && known->second.first == points) return known->second.second;
+        }
+        PreparedMesh prepared = prepared_anew(number);
+        const std::lock_guard lock(cache.mutex);
+        cache.meshes[key] = {points, prepared};
+        return prepared;
+    }
+
+    PreparedMesh prepared_anew(uint32_t number) {
         SourceSolid& from = source_.solids[number];
         const NormalizedMesh mesh = placed_mesh(number);
         PreparedMesh prepared;
@@ -423,8 +461,39 @@ class Compiler {
         hash_.add(description_.background);
         hash_.add(scale_.bound);
         hash_.add(static_cast<uint32_t>(scale_.exponent));
+        compile_sky(textures);
         scene_.textures = std::move(textures.textures);
         scene_.texels = std::move(textures.texels);
+    }
+
+    void compile_sky(const TextureSet& textures) {
+        if (!description_.sky) return;
+        const SkyDescription& sky = *description_.sky;
+        Sky& to = scene_.sky;
+        to.kind = sky.texture < 0 ? SkyKind::gradient : SkyKind::picture;
+        hash_.add(static_cast<uint32_t>(to.kind));
+        if (to.kind == SkyKind::gradient) {
+            to.axes[2] = normalized(sky.axis);
+            for (const SkyColor& stop : sky.stops)
+                scene_.sky_stops.push_back({sine_cosine_of_degrees(stop.degrees).cosine, scaled(stop.color)});
+        } else {
+            const Rotation rotation(sky.rotation);
+            for (int axis = 0; axis < 3; ++axis) {
+                dvec3 unit(0);
+                unit[axis] = 1;
+                to.axes[axis] = rotation(unit);
+            }
+            to.texture = static_cast<uint32_t>(textures.number[static_cast<size_t>(sky.texture)]);
+            to.scale = std::ldexp(sky.scale, -scale_.exponent);
+            hash_.add(to.texture);
+        }
+        for (const dvec3& axis : to.axes) hash_.add(axis);
+        hash_.add(to.scale);
+        for (const SkyStop& stop : scene_.sky_stops) hash_.add(stop.cosine), hash_.add(stop.color);
+        scene_.warnings.push_back(scene_error(description_, "/background",
+                                              "it is seen, mirrored and refracted, but lights nothing",
+                                              "`ambient` and lights do")
+                                      .what());
     }
 
     void compile_lights() {
