@@ -80,8 +80,8 @@ struct alignas(16) Solid {
     uint32_t flat;            // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
                               // on it does not meet it again
     uint32_t may_touch;       // convex, mesh: 1 if its padded box meets that of another such solid
-    uint32_t isolated;        // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
-                              // hits next is its own face
+    uint32_t isolated;        // convex: 1 if nothing else is inside it: whatever a ray inside it hits next is its
+                              // own face
     uint32_t first_near, near_count;  // the shared planes that reach it: near_planes[first_near + i]
 };
 

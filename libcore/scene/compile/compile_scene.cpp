@@ -229,7 +229,7 @@ class Compiler {
         });
     }
 
-    /// Finds solids that overlap no other. An optimization, skipped for scenes with very many pairs.
+    /// Finds solids inside of which nothing else is. An optimization, skipped for scenes with very many pairs.
     void find_isolated_solids() {
         const SceneView<Real> view = scene_.view();
         const size_t primitives = view.convex.size + view.clusters.size;
@@ -238,14 +238,34 @@ class Compiler {
         for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(primitive_box(view, p));
         for (uint32_t a = 0; a < view.convex.size; ++a) {
             bool isolated = true;
-            for (uint32_t b = 0; b < primitives && isolated; ++b) {
-                bool apart = a == b;
-                for (int k = 0; k < 3; ++k)
-                    apart |= boxes[a].high[k] < boxes[b].low[k] || boxes[b].high[k] < boxes[a].low[k];
-                isolated = apart;
-            }
+            for (uint32_t b = 0; b < primitives && isolated; ++b)
+                isolated = a == b || are_apart(boxes[a], boxes[b]) || is_outside_ball(view, a, b, boxes[b]);
             scene_.solids[view.convex[a]].isolated = isolated ? 1 : 0;
         }
+    }
+
+    static bool are_apart(const PaddedBox& a, const PaddedBox& b) {
+        bool apart = false;
+        for (int k = 0; k < 3; ++k) apart |= a.high[k] < b.low[k] || b.high[k] < a.low[k];
+        return apart;
+    }
+
+    /// Whether nothing of primitive b, in a box, is inside the convex solid a, which is a ball: b's box is outside, or
+    /// b is a ball that at most touches it (docs/rules.md, 14, line 9).
+    bool is_outside_ball(const SceneView<Real>& view, uint32_t a, uint32_t b, const PaddedBox& box) const {
+        const auto ball_of = [&](uint32_t p) -> const Ball<Real>* {
+            const Solid* solid = p < view.convex.size ? &view.solids[view.convex[p]] : nullptr;
+            return solid && is_ball(*solid) ? &view.balls[solid->first_slab] : nullptr;
+        };
+        const Ball<Real>* own = ball_of(a);
+        if (!own) return false;
+        const dvec3 center(own->center);
+        const double radius = own->radius;
+        if (const Ball<Real>* other = ball_of(b))
+            return length(dvec3(other->center) - center) >=
+                   radius + double(other->radius) - double(incidence<Real>) * double(view.extent);
+        return distance_to_box(Box{{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}},
+                               center) > radius;
     }
 
     NormalizedMesh placed_mesh(uint32_t number) const {
