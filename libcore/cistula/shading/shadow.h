@@ -205,9 +205,10 @@ CISTULA_INLINE void shadow_ball(const Scene& scene, uint32_t index, const Shadow
     if (!any(inside | enters)) return;
     const MaskOf<Real> on = starts_on_ball(scene, index, ball, ray);
     enters = enters & !on;
-    const Real far = select(inside & on, Real(2) * chord.middle, chord.middle + chord.half);
+    const Real half = chord.half();
+    const Real far = select(inside & on, Real(2) * chord.middle, chord.middle + half);
     const Real leave = select(lit_inside, shadow.distance, clamped(far, Real(0), shadow.distance));
-    const Real enter = clamped(select(inside, Real(0), chord.middle - chord.half), Real(0), shadow.distance);
+    const Real enter = clamped(select(inside, Real(0), chord.middle - half), Real(0), shadow.distance);
     const Material<T>& material = scene.materials[solid.material];
     sum.cross(material, enters);
     sum.cross(material, (inside | enters) & !lit_inside);
