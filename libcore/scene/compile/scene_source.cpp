@@ -95,6 +95,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
         solid.place = object.place;
         solid.mesh = std::move(part.mesh);
         solid.keep_triangles = mesh.keep_triangles;
+        solid.smooth = mesh.smooth;
         if (object.material >= 0) {
             solid.material = static_cast<uint32_t>(object.material);
         } else if (part.material) {
@@ -190,8 +191,10 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
             solid.mesh.vertices = triangles.vertices;
             solid.mesh.triangles = triangles.triangles;
             solid.mesh.uvs = triangles.uvs;
+            solid.mesh.normals = triangles.normals;
             solid.mesh.rounding = coordinate_rounding(triangles.vertices);
             solid.keep_triangles = triangles.keep_triangles;
+            solid.smooth = triangles.smooth;
             MeshPieces pieces = find_pieces(solid.mesh, stop);
             add_mesh_solids(source, std::move(solid), std::move(pieces));
             continue;

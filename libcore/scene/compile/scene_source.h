@@ -27,6 +27,10 @@ struct SourceSolid {
     double thickness = 0;         // of a closed mesh, in scene units: the least volume / area of its bodies
     uint32_t body = 0;            // of several solids that one mesh makes, from 0; they share its name
     bool keep_triangles = false;  // the mesh is not given by planes, even where it could be
+    Smoothing smooth;             // of the mesh, as described
+    /// Unit normals at the corners of each of its triangles, outward, 0 where a triangle is flat; none: all are.
+    std::vector<std::array<glm::dvec3, 3>> normals;
+    bool in_parts = false;  // a mesh with normals whose triangles are not all joined by edges
 
     /// Whether it is given by triangles, of which planes may be made.
     bool is_mesh() const { return !polyhedron && !sphere; }

@@ -14,6 +14,7 @@ void add_pieces(Cases& cases);
 void add_refraction(Cases& cases);
 void add_shadows(Cases& cases);
 void add_size(Cases& cases);
+void add_smooth(Cases& cases);
 void add_sums(Cases& cases);
 
 const std::vector<Case>& all_cases() {
@@ -35,6 +36,7 @@ const std::vector<Case>& all_cases() {
         add("refraction/", add_refraction);
         add("shadows/", add_shadows);
         add("size/", add_size);
+        add("smooth/", add_smooth);
         add("sums/", add_sums);
         return cases.all;
     }();
