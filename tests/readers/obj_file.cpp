@@ -134,7 +134,7 @@ TEST(ObjFile, IndicesCountForwardAndBackward) {
 }
 
 TEST(ObjFile, TextureCoordinatesBelongToCorners) {
-    const auto meshes = read_quietly(square + "vt 0.5\nvt 1 0.25\nvt 0 1 0\nf 1/1 2/2/7 3/-1\nf 1 3 4\n");
+    const auto meshes = read_quietly(square + "vt 0.5\nvt 1 0.25\nvt 0 1 0\nvn 0 0 1\nf 1/1 2/2/1 3/-1\nf 1 3 4\n");
     EXPECT_EQ(meshes.at(0).uvs, (std::vector<dvec2>{{0.5, 0}, {1, 0.25}, {0, 1}, {0, 0}, {0, 0}, {0, 0}}));
     EXPECT_TRUE(read_quietly(square + "vt 0 0\nf 1 2 3\n").at(0).uvs.empty());
     expect_obj_refused("vt nan 0\n", "a.obj:1: a texture coordinate is not finite");

@@ -301,9 +301,12 @@ TEST(SceneTriangles, Errors) {
     EXPECT_WRONG_OBJECT(
         list(three, "[[0, 1, 2]]", R"(, "normals": [[0, 0, 1]])"),
         "/triangles/normals: expected an array of 3 vectors [x, y, z], one a vertex, found an array of 1");
-    for (const char* smooth : {"true", "-1", "181", "\"yes\""})
-        EXPECT_WRONG_OBJECT(R"({"material": "glass", "mesh": "a.ply", "smooth": )" + std::string(smooth) + "}",
-                            "/smooth: expected ");
+    const auto smooth = [](const std::string& value) {
+        return R"({"material": "glass", "mesh": "a.ply", "smooth": )" + value + "}";
+    };
+    EXPECT_WRONG_OBJECT(smooth("true"), "/smooth: expected false, or an angle from 0 to 180 degrees, found true");
+    EXPECT_WRONG_OBJECT(smooth("181"), "/smooth: expected a number from 0 to 180, found 181");
+    EXPECT_WRONG_OBJECT(smooth("-1"), "/smooth: expected a number from 0 to 180, found -1");
     EXPECT_EQ(shape_of<MeshObject>(R"({"material": "glass", "mesh": "a.ply", "smooth": false})").smooth, 0.0);
     EXPECT_FALSE(shape_of<MeshObject>(R"({"material": "glass", "mesh": "a.ply"})").smooth.has_value());
     EXPECT_WRONG_OBJECT(list(three, "[[0, 1, 2]]", R"(, "uv": [])"), "/triangles/uv: unknown key; did you mean 'uvs'?");
