@@ -126,27 +126,28 @@ class BranchReader {
         out.material = s.material;
         out.t = double(event.hit.t) * frame_.unit_length;
         out.point = to_scene(s.point);
-        out.normal = Vec3<double>(s.normal);
+        out.normal = Vec3<double>(s.shading);
+        if (s.smooth) out.face_normal = Vec3<double>(s.normal);
         out.color = Vec3<double>(s.color);
         out.before = solids_of(ray.media);
         out.beyond = solids_of(event.beyond);
         out.index_before = index_of(scene_, ray.media);
         out.index_beyond = index_of(scene_, event.beyond);
-        out.cosine = -double(dot(ray.direction, s.normal));
+        out.cosine = -double(dot(ray.direction, s.shading));
         const bool sheet = out.crossing == CrossingKind::sheet;
         take_opaque_index(scene_, m, m.fresnel != 0 && !sheet, out.index_beyond);
         const InterfaceSplit<Real> split =
-            split_at<Real, E>(scene_, m, ray.direction, s.normal, ray.media, event.beyond, sheet);
+            split_at<Real, E>(scene_, m, ray.direction, s.shading, ray.media, event.beyond, sheet, s.normal, s.smooth);
         out.local = double(m.local);
         out.mirrored = double(split.reflection);
         out.through = Vec3<double>(split.filter);
         out.bends = split.bends;
         if (split.bends) {
             const Refraction<Real> refraction =
-                refracted<Real>(ray.direction, s.normal, out.index_before, out.index_beyond);
-            out.total = refraction.total;
-            if (!refraction.total) out.bent_cosine = -double(dot(refraction.direction, s.normal));
-            if (m.fresnel != 0 && !sheet) out.fresnel = double(refraction.reflectance);
+                refracted<Real>(ray.direction, s.shading, out.index_before, out.index_beyond);
+            out.total = split.total;
+            if (!out.total) out.bent_cosine = -double(dot(refraction.direction, s.shading));
+            if (m.fresnel != 0 && !sheet) out.fresnel = out.total ? 1 : double(refraction.reflectance);
         } else if (m.fresnel != 0 && !sheet) {
             out.fresnel = 0;
         }
@@ -227,7 +228,7 @@ class BranchReader {
             contribution.cosine = double(aim.cosine);
         }
         void behind(uint32_t i, const Light<Real>& light) const {
-            aim(contribution(i), LightAim<Real>::of(light, s));
+            aim(contribution(i), LightAim<Real>::of(light, s.viewer_side, s.shading));
             contribution(i).fate = LightFate::behind;
         }
         void unshadowed(uint32_t i, const LightAim<Real>& to_light, const Vec3<Real>& lit) const {

@@ -261,11 +261,14 @@ TEST(SceneTriangles, Arrive) {
     const auto list =
         shape_of<TrianglesObject>(R"({"name": "n", "material": "tiles", "keep_triangles": true, "triangles": {
         "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], "indices": [[0, 1, 2], [3, 2, 1]],
-        "uvs": [[0, 0], [1, 0], [0, 1], [-2, 3.5]]}})");
+        "uvs": [[0, 0], [1, 0], [0, 1], [-2, 3.5]], "normals": [[0, 0, 1], [0, 0, 0], [1, 2, 3], [0, 0, 1]]},
+        "smooth": 45})");
     EXPECT_EQ(list.vertices.size(), 4u);
     EXPECT_EQ(list.vertices[3], glm::dvec3(0, 0, 1));
     EXPECT_EQ(list.triangles, (std::vector<std::array<uint32_t, 3>>{{0, 1, 2}, {3, 2, 1}}));
     EXPECT_EQ(list.uvs[3], glm::dvec2(-2, 3.5));
+    EXPECT_EQ(list.normals[2], glm::dvec3(1, 2, 3));
+    EXPECT_EQ(list.smooth, 45.0);
     EXPECT_TRUE(list.keep_triangles);
 }
 
@@ -295,6 +298,17 @@ TEST(SceneTriangles, Errors) {
                         "/triangles/uvs: expected an array of 3 pairs [u, v], one a vertex, found an array of 1");
     EXPECT_WRONG_OBJECT(list(three, "[[0, 1, 2]]", R"(, "uvs": [[0, 0], [0, 0], [0, 1e7]])"),
                         "/triangles/uvs/2/1: expected a number from -1000000 to 1000000, found 10000000");
+    EXPECT_WRONG_OBJECT(
+        list(three, "[[0, 1, 2]]", R"(, "normals": [[0, 0, 1]])"),
+        "/triangles/normals: expected an array of 3 vectors [x, y, z], one a vertex, found an array of 1");
+    const auto smooth = [](const std::string& value) {
+        return R"({"material": "glass", "mesh": "a.ply", "smooth": )" + value + "}";
+    };
+    EXPECT_WRONG_OBJECT(smooth("true"), "/smooth: expected false, or an angle from 0 to 180 degrees, found true");
+    EXPECT_WRONG_OBJECT(smooth("181"), "/smooth: expected a number from 0 to 180, found 181");
+    EXPECT_WRONG_OBJECT(smooth("-1"), "/smooth: expected a number from 0 to 180, found -1");
+    EXPECT_EQ(shape_of<MeshObject>(R"({"material": "glass", "mesh": "a.ply", "smooth": false})").smooth, 0.0);
+    EXPECT_FALSE(shape_of<MeshObject>(R"({"material": "glass", "mesh": "a.ply"})").smooth.has_value());
     EXPECT_WRONG_OBJECT(list(three, "[[0, 1, 2]]", R"(, "uv": [])"), "/triangles/uv: unknown key; did you mean 'uvs'?");
     EXPECT_WRONG_OBJECT(R"({"material": "glass", "triangles": {"vertices": []}})", "/triangles: missing key 'indices'");
     EXPECT_WRONG_OBJECT(R"({"material": "tiles", "triangles": {"vertices": )" + three + R"(, "indices": [[0, 1, 2]]}})",

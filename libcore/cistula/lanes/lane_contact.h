@@ -341,4 +341,36 @@ CISTULA_INLINE void correct_starts(const LaneScene<T>& scene, const Ray<Lanes<T,
     }
 }
 
+/// What lies between is asked lane by lane.
+template <class T, int n>
+struct SmoothStart<Lanes<T, n>> {
+    using Real = Lanes<T, n>;
+    Vec3<Real> place;
+    MaskOf<Real> lifted = false;
+
+    template <class Intersector>
+    CISTULA_NOINLINE static SmoothStart of(const LaneScene<T>& scene, const Intersector&, const Hit<Real>& hit,
+                                           const Surface<Real>& s, const Vec3<Real>& from,
+                                           const LaneMedia<Real>& around, const MaskOf<Real>& active) {
+        Vec3<Real> way(Real(0));
+        MaskOf<Real> asked = false;
+        for_each_value(active & s.smooth, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+            Vec3<T> corner[3];
+            triangle_corners(scene, slot, corner);
+            assign_where(same, way, bulge(corner, corner_normals(scene, slot), hit, s.point));
+            if (scene.solids[scene.clusters[slot / cluster_lanes].solid].slab_count != 0) asked |= same;
+        });
+        const Real size = length(way);
+        SmoothStart start{from, size > Real(least_lift<T> * scene.extent)};
+        for_each_lane(start.lifted & asked, [&](int lane) {
+            const uint64_t key = KeyFormat<Real>::of_lane(hit.key, lane);
+            if (SmoothStart<T>::is_crossed(SingleIntersector<T>{scene}, key, lane_of(from, lane), lane_of(way, lane),
+                                           size[lane], around.of(lane).list()))
+                start.lifted = start.lifted & !MaskOf<Real>::of_bits(1u << lane);
+        });
+        assign_where(start.lifted, start.place, from + way);
+        return start;
+    }
+};
+
 }  // namespace cistula

@@ -46,6 +46,8 @@ template <class T, int n>
 struct Surface<Lanes<T, n>> {
     using Real = Lanes<T, n>;
     Vec3<Real> point, normal, viewer_side, color;
+    Vec3<Real> shading, mirrored;
+    MaskOf<Real> smooth = false;
     LaneMedia<Real> viewer_media;  // around viewer_side
     LaneMaterial<Real> material;
 };
@@ -260,7 +262,19 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
                 assign_where(same, s.viewer_side, off_sheet(scene.extent, ray, hit.t, toward));
             else
                 assign_where(same, s.viewer_side, off_triangle(scene, slot, hit.enters, point));
+            if constexpr (E::has(effect_smooth))
+                if (const Vec3<T>* normals = corner_normals(scene, slot)) {
+                    assign_where(same, s.shading, normal_between(normals, hit));
+                    s.smooth |= same;
+                }
         });
+    }
+    if (E::has(effect_smooth) && any(s.smooth)) {
+        Vec3<Real> shading = normalized(s.shading);
+        bend_normal(ray.direction, s.normal, shading, s.mirrored);
+        s.shading = select(s.smooth, shading, s.normal);
+    } else {
+        s.shading = s.normal;
     }
     if constexpr (E::has(effect_texture)) {
         const MaskOf<Real> textured = active & !convex & (s.material.texture >= Index(0));

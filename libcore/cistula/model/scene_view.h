@@ -72,7 +72,8 @@ struct alignas(16) Solid {
     float plane_offset;        // ... and normal.x on it
     SolidKind kind;
     uint32_t material;
-    uint32_t first_slab, slab_count;  // convex: its slabs; a ball has none, and is balls[first_slab]
+    uint32_t first_slab, slab_count;  // convex: its slabs; a ball has none, and is balls[first_slab]; smooth mesh: 1 +
+                                      // the place of its first normal, and 1 if others may be within its bulges
     uint32_t first_group;     // convex: the same slabs, ceil(slab_count / 8) groups; flat sheet near a ball: 1 +
                               // its plane in ball_planes; else 0
     uint32_t first_triangle;  // mesh, sheet: scene-wide number of its first triangle
@@ -88,6 +89,12 @@ struct alignas(16) Solid {
 /// Whether a convex solid is a ball.
 CISTULA_INLINE bool is_ball(const Solid& solid) {
     return solid.kind == SolidKind::convex && solid.slab_count == 0;
+}
+
+/// Whether triangles have normals at their corners (docs/rules.md, 17): those of a face are normals[first_slab - 1 +
+/// 3 (triangle - first_triangle) + corner], outward, all 0 if it is flat.
+CISTULA_INLINE bool is_smooth(const Solid& solid) {
+    return solid.kind != SolidKind::convex && solid.first_slab != 0;
 }
 
 /// Whether a solid is a flat sheet near balls.
@@ -293,6 +300,7 @@ struct SceneView {
     Span<Cluster<Real>> clusters;  // primitive p >= convex.size is clusters[p - convex.size]
     Span<Facet<Real>> facets;      // or, where there are any, facets[p - convex.size]
     Span<Vec2<Real>> uvs;
+    Span<Vec3<Real>> normals;  // of smooth meshes
     Span<Material<Real>> materials;
     Span<Light<Real>> lights;
     Span<Incident> incidents;

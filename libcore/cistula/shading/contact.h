@@ -1,6 +1,7 @@
 // Rays that start where bodies share a plane, or on balls: on which side of every plane near the start, and inside
 // which solids (docs/rules.md, 11, lines 8 to 15; 14, lines 12 to 14). What the parent ray knows decides, not the
-// rounded place of the start; of meshes, what lies ahead of it.
+// rounded place of the start; of meshes, what lies ahead of it. And those toward lights from smooth meshes (16, line
+// 8).
 #pragma once
 
 #include "cistula/geometry/shared_plane.h"
@@ -281,5 +282,41 @@ CISTULA_INLINE BallStart ball_start(const SceneView<Real>& scene, const Ray<Real
     return ball.plane_count == 0 && ball.near_meshes == 0 ? BallStart()
                                                           : known_at_start(scene, ball, parent, hit.t, start);
 }
+
+/// Where shadow rays from a surface of a smooth mesh start: off the face by its bulge there, unless anything lies
+/// between. (In lanes: lane_contact.h.)
+template <class Real>
+struct SmoothStart {
+    Vec3<Real> place;
+    MaskOf<Real> lifted = false;
+
+    /// `from`: the start without the bulge; `around`: the solids there.
+    template <class Intersector, class Media, class Scene>
+    CISTULA_INLINE static SmoothStart of(const Scene& scene, const Intersector& intersector, const Hit<Real>& hit,
+                                         const Surface<Real>& s, const Vec3<Real>& from, const Media& around, bool) {
+        const Solid& solid = scene.solids[key_solid(hit.key)];
+        Vec3<Real> corner[3];
+        triangle_corners(scene, hit.slot, corner);
+        const Vec3<Real> way = bulge(corner, corner_normals(scene, hit.slot), hit, s.point);
+        const Real size = length(way);
+        if (!(size > least_lift<Real> * scene.extent)) return {from};
+        if (solid.slab_count != 0 && is_crossed(intersector, hit.key, from, way, size, around)) return {from};
+        return {from + way, true};
+    }
+
+    /// Whether anything lies on a way from the face of a hit, of whatever side.
+    template <class Intersector, class Media>
+    CISTULA_NOINLINE static bool is_crossed(const Intersector& intersector, uint64_t key, Vec3<Real> from,
+                                            Vec3<Real> way, Real size, Media around) {
+        Ray<Real, Media> ray;
+        ray.origin = from;
+        ray.direction = way / size;
+        ray.from_solid = key_solid(key);
+        ray.from_face = key_face(key);
+        ray.media = around;
+        ray.accept_both_sides();
+        return unobserved(intersector).closest(ray).t < size;
+    }
+};
 
 }  // namespace cistula

@@ -5,6 +5,7 @@
 #include "cistula/model/scene_access.h"
 #include "cistula/model/texture.h"
 #include "cistula/numerics/trigonometry.h"
+#include "cistula/shading/smooth.h"
 
 namespace cistula {
 
@@ -27,7 +28,18 @@ struct Surface {
     Vec3<Real> viewer_side;  // origin of rays that stay on the viewer's side
     Vec3<Real> color;        // material color times texture
     uint32_t material;
+    Vec3<Real> shading;   // the normal that light goes by: the geometric one, but on smooth meshes
+    bool smooth = false;  // whether it is another
+    Vec3<Real> mirrored;  // then: the direction of the mirrored ray
 };
+
+/// The direction of a surface's mirrored ray.
+template <class E, class Media, class Real>
+CISTULA_INLINE Vec3<Real> mirrored_way(const Surface<Real>& s, const Vec3<Real>& direction) {
+    if constexpr (meets_smooth<E, Media>)
+        if (any(s.smooth)) return select(s.smooth, s.mirrored, reflected(direction, s.normal));
+    return reflected(direction, s.normal);
+}
 
 template <class Real, class Scene>
 CISTULA_INLINE const Material<Real>& material_of(const Scene& scene, const Surface<Real>& s) {
@@ -115,7 +127,7 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
     s.material = solid.material;
     const Material<Real>& material = scene.materials[s.material];
     s.color = material.color;
-    s.normal = normal_at<E>(scene, ray, hit);
+    s.normal = s.shading = normal_at<E>(scene, ray, hit);
     if constexpr (meets_balls<E, Media>)
         if (is_ball(solid)) {
             const Ball<Real>& ball = scene.balls[solid.first_slab];
@@ -139,6 +151,12 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
         s.viewer_side = apex_at(scene, hit.slot, corner, s.normal, hit.enters).from(s.point);
         if constexpr (meets_balls<E, Media>)
             if (is_sheet_near_ball(solid)) s.viewer_side = off_sheet(scene.extent, ray, hit.t, s.normal);
+        if constexpr (meets_smooth<E, Media>)
+            if (const Vec3<Real>* normals = corner_normals(scene, hit.slot)) {
+                s.smooth = true;
+                s.shading = normalized(normal_between(normals, hit));
+                bend_normal(ray.direction, s.normal, s.shading, s.mirrored);
+            }
     }
     if constexpr (E::has(effect_texture)) {
         if (material.texture >= 0) {

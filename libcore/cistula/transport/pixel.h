@@ -161,7 +161,7 @@ struct FirstSeen {
 
     CISTULA_INLINE void surface(const Hit<Real>& hit, const Surface<Real>& surface) const {
         ++record.hits;
-        if (middle) keep(key_solid(hit.key), hit.t, surface.normal);
+        if (middle) keep(key_solid(hit.key), hit.t, surface.shading);
     }
     template <class Scene, class Media>
     CISTULA_INLINE void light(const Scene& scene, const VisibleLightHit<Real>& hit, const Ray<Real, Media>& ray) const {

@@ -60,10 +60,7 @@ CISTULA_HD inline bool begin_segment(const Scene& scene, const RayQuestion& ques
             shadow.light = &light;
             end.position = light.position;
         }
-    Surface<Real> from;
-    from.viewer_side = shadow.ray.origin;
-    from.normal = Vec3<Real>(Real(0));
-    const LightAim<Real> aim = LightAim<Real>::of(end, from);
+    const LightAim<Real> aim = LightAim<Real>::of(end, shadow.ray.origin, Vec3<Real>(Real(0)));
     shadow.ray.direction = aim.direction;
     shadow.distance = aim.distance;
     return start < distance && aim.distance > Real(0);

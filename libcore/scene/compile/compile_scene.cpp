@@ -26,6 +26,7 @@
 #include "scene/compile/lights/radiance_bound.h"
 #include "scene/compile/materials/compile_materials.h"
 #include "scene/compile/materials/required_effects.h"
+#include "scene/compile/meshes/corner_normals.h"
 #include "scene/compile/meshes/mesh_apex.h"
 #include "scene/compile/scene_hash.h"
 #include "scene/compile/solids/compile_balls.h"
@@ -101,6 +102,7 @@ class Compiler {
         scene_.hulls.resize(source_.solids.size());
         places_.boxes.resize(source_.solids.size());
         places_.distances.resize(source_.solids.size());
+        places_.bulges.resize(source_.solids.size());
         flat_planes_.resize(source_.solids.size());
         by_planes_.assign(source_.solids.size(), false);
         if (description_.contact) hash_.add(*description_.contact);
@@ -130,6 +132,7 @@ class Compiler {
         add_hulls();
         find_touching_solids();
         find_isolated_solids();
+        find_crossed_bulges();
         explain();
         scene_.hashes = FrameHashes(hash_.hex());
         return std::make_unique<CompiledScene<Real>>(std::move(scene_));
@@ -205,15 +208,17 @@ class Compiler {
         return dot(dvec3(shared.normal), pair.normal) > 0 ? shared.offset : -shared.offset;
     }
 
+    /// Whether two boxes are no farther apart than `reach` along any axis.
+    static bool near(const Box& a, const Box& b, double reach) {
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(a.low[axis] <= b.high[axis] + reach && b.low[axis] <= a.high[axis] + reach)) return false;
+        return true;
+    }
+
     /// Finds the solids with an inside that may share a face with another solid (surface_event.h).
     void find_touching_solids() {
         const auto may_share = [&](uint32_t i) {
             return scene_.solids[i].kind != SolidKind::sheet && !places_.boxes[i].empty();
-        };
-        const auto near = [&](const Box& a, const Box& b) {
-            for (int axis = 0; axis < 3; ++axis)
-                if (!(a.low[axis] <= b.high[axis] + touching && b.low[axis] <= a.high[axis] + touching)) return false;
-            return true;
         };
         const auto count = static_cast<uint32_t>(scene_.solids.size());
         std::vector<RTCBuildPrimitive> primitives;
@@ -224,7 +229,7 @@ class Compiler {
             const Box& own = places_.boxes[i];
             if (may_share(i))
                 scene_.solids[i].may_touch = any_in_box(tree, padded(own, touching), [&](uint32_t other) {
-                    return other != i && near(own, places_.boxes[other]);
+                    return other != i && near(own, places_.boxes[other], touching);
                 });
         });
     }
@@ -266,6 +271,19 @@ class Compiler {
                    radius + double(other->radius) - double(incidence<Real>) * double(view.extent);
         return distance_to_box(Box{{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}},
                                center) > radius;
+    }
+
+    /// Finds the smooth meshes of which anything else, or another part, may lie within a bulge.
+    void find_crossed_bulges() {
+        const auto count = static_cast<uint32_t>(scene_.solids.size());
+        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+            Solid& solid = scene_.solids[i];
+            if (!is_smooth(solid)) return;
+            bool is_crossed = source_.solids[i].in_parts;
+            for (uint32_t other = 0; other < count && !is_crossed; ++other)
+                is_crossed = other != i && near(places_.boxes[i], places_.boxes[other], places_.bulges[i] + touching);
+            solid.slab_count = is_crossed ? 1 : 0;
+        });
     }
 
     NormalizedMesh placed_mesh(uint32_t number) const {
@@ -369,8 +387,31 @@ class Compiler {
                 if (outlined) scene_.hulls[number].points.push_back(mesh.vertex(corner));
                 if (textured) scene_.uvs.push_back(Vec2<Real>(from.mesh.uvs[corner]));
             }
+        if (!from.normals.empty()) add_normals(number, mesh);
         triangle_count_ += mesh.size();
         from.mesh = {};  // its triangles are now stored in the clusters
+    }
+
+    /// Adds the normals of a mesh's corners. Triangles on shared planes are flat, and so are slivers that rounding has
+    /// turned away from their normals.
+    void add_normals(uint32_t number, const NormalizedMesh& mesh) {
+        scene_.solids[number].first_slab = static_cast<uint32_t>(scene_.normals.size()) + 1;
+        for (uint32_t t = 0; t < mesh.size(); ++t) {
+            const std::array<dvec3, 3>& normals = source_.solids[number].normals[t];
+            const std::array<dvec3, 3> corners = mesh.triangle(t);
+            const dvec3 face = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
+            bool is_flat = bodies_.contacts.plane_of(number, t) != no_plane;
+            double bulge = 0;
+            for (size_t c = 0; c < 3; ++c) {
+                is_flat = is_flat || !(dot(normals[c], face) >= least_cosine / 2);
+                for (const dvec3& corner : corners)
+                    bulge = max_or_second(magnitude(dot(normals[c], corners[c] - corner)), bulge);
+            }
+            for (const dvec3& normal : normals)
+                scene_.normals.push_back(is_flat ? Vec3<Real>(Real(0)) : Vec3<Real>(normal));
+            if (!is_flat) places_.bulges[number] = max_or_second(bulge, places_.bulges[number]);
+        }
+        source_.solids[number].normals = {};
     }
 
     /// Whether all corners lie within `tolerance` of the plane of the largest triangle, which is then stored in the
@@ -409,9 +450,10 @@ class Compiler {
         find_triangle_incidents(lights_, NormalizedMesh(from.mesh, normalization_, contacts.points, false),
                                 prepared.groups, prepared.tree, number, triangle_count_, contacts.reach,
                                 incident_reach(), light_faces_);
+        const LightFaces none(lights_.size());  // light in the plane of a smooth face may fall on it
         places_.distances[number] =
-            light_distances(lights_, mesh, prepared.groups, prepared.tree, number, triangle_count_, light_faces_,
-                            normalization_.extent, 2 * incident_reach());
+            light_distances(lights_, mesh, prepared.groups, prepared.tree, number, triangle_count_,
+                            from.normals.empty() ? light_faces_ : none, normalization_.extent, 2 * incident_reach());
     }
 
     /// Moves lights onto the faces on which they lie; distances from where they were then say nothing.
@@ -431,6 +473,8 @@ class Compiler {
         }
         hash_.add_bytes(mesh.triangles.data(), mesh.triangles.size_bytes());
         if (source_.solids[number].keep_triangles) hash_.add(1u);
+        for (const auto& corners : source_.solids[number].normals)
+            for (const dvec3& normal : corners) hash_.add(normal);
         if (source_.materials[source_.solids[number].material].texture < 0) return;
         for (const auto& uv : mesh.uvs) hash_.add(uv.x), hash_.add(uv.y);
     }
@@ -591,7 +635,8 @@ class Compiler {
         std::vector<MaterialUse> uses;
         for (size_t i = 0; i < source_.solids.size(); ++i)
             uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place,
-                            source_.solids[i].closed, by_planes_[i], source_.solids[i].sphere != nullptr});
+                            source_.solids[i].closed, by_planes_[i], source_.solids[i].sphere != nullptr,
+                            is_smooth(scene_.solids[i])});
         scene_.effect_reasons =
             explain_effects(description_, uses, light_on_face(source_, lights_, light_faces_), contact());
         scene_.effects = required_effects(scene_.effect_reasons);

@@ -44,6 +44,7 @@ struct CompiledScene {
     std::vector<uint32_t> convex;
     std::vector<Cluster<Real>> clusters;
     std::vector<Vec2<Real>> uvs;
+    std::vector<Vec3<Real>> normals;  // of smooth meshes
     std::vector<Material<Real>> materials;
     std::vector<Light<Real>> lights;
     std::vector<Incident> incidents;

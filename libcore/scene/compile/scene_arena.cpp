@@ -23,6 +23,7 @@ void for_each_span(SceneView<Real>& view, const Visit& visit) {
     visit(view.clusters);
     visit(view.facets);
     visit(view.uvs);
+    visit(view.normals);
     visit(view.materials);
     visit(view.lights);
     visit(view.incidents);

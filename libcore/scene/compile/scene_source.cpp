@@ -96,6 +96,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
         solid.object = static_cast<size_t>(&object - scene.objects.data());
         solid.mesh = std::move(part.mesh);
         solid.keep_triangles = mesh.keep_triangles;
+        solid.smooth = mesh.smooth;
         if (object.material >= 0) {
             solid.material = static_cast<uint32_t>(object.material);
         } else if (part.material) {
@@ -147,6 +148,9 @@ SourceSolid with_mesh(const SourceSolid& solid, MeshSource mesh) {
     made.body = solid.body;
     made.keep_triangles = solid.keep_triangles;
     made.object = solid.object;
+    made.smooth = solid.smooth;
+    made.normals = solid.normals;
+    made.in_parts = solid.in_parts;
     return made;
 }
 
@@ -213,8 +217,10 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
             solid.mesh.vertices = triangles.vertices;
             solid.mesh.triangles = triangles.triangles;
             solid.mesh.uvs = triangles.uvs;
+            solid.mesh.normals = triangles.normals;
             solid.mesh.rounding = coordinate_rounding(triangles.vertices);
             solid.keep_triangles = triangles.keep_triangles;
+            solid.smooth = triangles.smooth;
             MeshPieces pieces = find_pieces(solid.mesh, stop);
             add_mesh_solids(source, std::move(solid), std::move(pieces));
             continue;

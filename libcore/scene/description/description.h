@@ -91,13 +91,19 @@ struct SphereObject {
     glm::dvec3 rotation{0};  // degrees about x, then y, then z
 };
 
+/// How a mesh is shaded: without a value by the normals that it has, else by the means of those faces around a corner
+/// that meet at angles less than this, in degrees; 0: by its faces.
+using Smoothing = std::optional<double>;
+
 /// A mesh given in the scene file. Closed meshes become solids with an inside, others are sheets seen from both sides.
 /// Convex solids with flat faces are given by planes, unless they keep their triangles.
 struct TrianglesObject {
     std::vector<glm::dvec3> vertices;
     std::vector<std::array<uint32_t, 3>> triangles;
-    std::vector<glm::dvec2> uvs;  // one per vertex, or none
+    std::vector<glm::dvec2> uvs;      // one per vertex, or none
+    std::vector<glm::dvec3> normals;  // one per vertex, or none; of any length
     bool keep_triangles = false;
+    Smoothing smooth;
 };
 
 /// A mesh that may have polygons, groups and materials of its own, and is placed.
@@ -108,6 +114,7 @@ struct MeshObject {
     double scale = 1;
     glm::dvec3 rotation{0};
     bool keep_triangles = false;
+    Smoothing smooth;
 };
 
 struct ObjectDescription {

@@ -158,6 +158,18 @@ void read_quad(const JsonValue& value, const ObjectContext& context, ObjectDescr
     object.shape = quad_triangles(corners);
 }
 
+/// Reads whether a mesh is smooth: false, or an angle.
+void read_smooth(JsonObject& keys, Smoothing& smooth) {
+    if (!keys.has("smooth")) return;
+    const JsonValue value = keys.at("smooth");
+    if (value.json().is_boolean()) {
+        if (value.json() == true) value.fail_expected("false, or an angle from 0 to 180 degrees");
+        smooth = 0;
+    } else {
+        smooth = value.number({"smooth", KeyType::number, {0, 180}, {}, false, {}});
+    }
+}
+
 TrianglesObject read_triangle_list(const JsonValue& value) {
     constexpr Key uv_key{"uvs", KeyType::pair, {-1e6, 1e6}, {}, false, {}};
     TrianglesObject list;
@@ -188,6 +200,13 @@ TrianglesObject read_triangle_list(const JsonValue& value) {
         list.uvs.reserve(vertex_count);
         for (size_t i = 0; i < vertex_count; ++i) list.uvs.push_back(uvs.item(i).pair(uv_key));
     }
+    if (keys.has("normals")) {
+        const JsonValue normals = keys.at("normals");
+        const std::string one_each = fmt::format("an array of {} vectors [x, y, z], one a vertex", vertex_count);
+        if (normals.array_size(0, one_each) != vertex_count) normals.fail_expected(one_each);
+        list.normals.reserve(vertex_count);
+        for (size_t i = 0; i < vertex_count; ++i) list.normals.push_back(normals.item(i).point(vertex_key()));
+    }
     keys.finish();
     return list;
 }
@@ -197,6 +216,7 @@ void read_triangles(const JsonValue& value, const ObjectContext& context, Object
     read_common(keys, context, object);
     TrianglesObject list = read_triangle_list(keys.at("triangles"));
     keys.read("keep_triangles", list.keep_triangles);
+    read_smooth(keys, list.smooth);
     keys.finish();
     if (list.uvs.empty()) refuse_texture(keys, context, object, "the triangles have no 'uvs'");
     object.shape = std::move(list);
@@ -209,6 +229,7 @@ void read_mesh(const JsonValue& value, const ObjectContext& context, ObjectDescr
     keys.read("mesh", mesh.file);
     mesh.file = file_beside_scene(mesh.file, context.base_dir);
     mesh_fields(mesh, [&](std::string_view key, auto& field) { keys.read(key, field); });
+    read_smooth(keys, mesh.smooth);
     keys.finish();
     object.shape = mesh;
 }

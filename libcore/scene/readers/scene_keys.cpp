@@ -227,13 +227,12 @@ constexpr Key edge_lights_list[] = {
 constexpr Key quad_list[] = {text("name"), other("quad", required), text("material", required)};
 
 constexpr Key triangles_list[] = {
-    text("name"),
-    other("triangles", required),
-    boolean("keep_triangles", "false"),
-    text("material", required),
+    text("name"),    other("triangles", required), boolean("keep_triangles", "false"),
+    other("smooth"), text("material", required),
 };
 
-constexpr Key triangle_list_list[] = {other("vertices", required), other("indices", required), other("uvs")};
+constexpr Key triangle_list_list[] = {other("vertices", required), other("indices", required), other("uvs"),
+                                      other("normals")};
 
 constexpr Key mesh_list[] = {
     text("name"),
@@ -242,6 +241,7 @@ constexpr Key mesh_list[] = {
     number("scale", size, "1"),
     point("rotate", angle, "[0, 0, 0]"),
     boolean("keep_triangles", "false"),
+    other("smooth"),
     text("material"),
 };
 

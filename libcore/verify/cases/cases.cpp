@@ -15,6 +15,7 @@ void add_refraction(Cases& cases);
 void add_shadows(Cases& cases);
 void add_size(Cases& cases);
 void add_sky(Cases& cases);
+void add_smooth(Cases& cases);
 void add_sums(Cases& cases);
 void add_time(Cases& cases);
 
@@ -38,6 +39,7 @@ const std::vector<Case>& all_cases() {
         add("shadows/", add_shadows);
         add("size/", add_size);
         add("sky/", add_sky);
+        add("smooth/", add_smooth);
         add("sums/", add_sums);
         add("time/", add_time);
         return cases.all;

@@ -64,7 +64,7 @@ struct Facts {
 struct Use {
     const Facts& facts;
     const MaterialDescription& material;
-    bool closed, convex, round;
+    bool closed, convex, round, smooth;
 };
 
 /// Whether some light may pass a material's faces: perhaps too little for numbers of float, but no less.
@@ -157,6 +157,8 @@ const MaterialRow material_rows[] = {
      [](const Use&) -> Text { return "is on a convex solid"; }, "there is no convex solid"},
     {effect_spheres, Premise::none, [](const Use& u) { return u.round; },
      [](const Use&) -> Text { return "is on a sphere"; }, "there is no solid sphere"},
+    {effect_smooth, Premise::none, [](const Use& u) { return u.smooth; },
+     [](const Use&) -> Text { return "is on a smooth mesh"; }, "no mesh has normals that differ from its faces'"},
     {effect_triangles, Premise::none, [](const Use& u) { return !u.convex; },
      [](const Use&) -> Text { return "is on triangles"; }, "there is neither mesh nor sheet"},
     {effect_insides, Premise::none, [](const Use& u) { return u.closed && passes(u.material); },
@@ -183,7 +185,7 @@ const LightRow light_rows[] = {
 /// A sentence with the first material that requires the effect; empty if none does.
 Text cause(const MaterialRow& row, const std::vector<MaterialUse>& uses, const Facts& facts) {
     for (const MaterialUse& one : uses) {
-        const Use use{facts, *one.material, one.closed, one.convex, one.round};
+        const Use use{facts, *one.material, one.closed, one.convex, one.round, one.smooth};
         if (row.needed(use)) return "material " + use.material.name + " of " + one.place + " " + row.because(use);
     }
     return "";
@@ -202,7 +204,7 @@ Facts find_facts(const SceneDescription& scene, const std::vector<MaterialUse>& 
     facts.ambient = any(scene.ambient);
     for (const SceneLight& light : lights) facts.point_light = facts.point_light || light.lights;
     for (const MaterialUse& one : uses) {
-        const Use use{facts, *one.material, one.closed, one.convex, one.round};
+        const Use use{facts, *one.material, one.closed, one.convex, one.round, one.smooth};
         if (facts.point_light && (shows_diffuse(use) || shows_specular(use))) facts.shown_light = true;
         if (passes(use.material)) facts.passing_rays = true;
     }

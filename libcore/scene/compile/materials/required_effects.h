@@ -18,6 +18,7 @@ struct MaterialUse {
     bool closed = true;   // it has an inside
     bool convex = false;  // a solid given by planes, or a sphere; else triangles
     bool round = false;   // a sphere
+    bool smooth = false;  // triangles with normals of their own
 };
 
 /// The reasons for all effects, in bit order. `uses` in file order; the lights considered give light or are visible.
