@@ -26,6 +26,7 @@
 #include "scene/compile/meshes/mesh_apex.h"
 #include "scene/compile/scene_hash.h"
 #include "scene/compile/solids/compile_balls.h"
+#include "scene/compile/solids/compile_disks.h"
 #include "scene/compile/solids/compile_solids.h"
 #include "scene/compile/solids/placed_bodies.h"
 #include "scene/trees/tree_build.h"
@@ -74,7 +75,7 @@ class Compiler {
         places_.boxes.resize(source_.solids.size());
         places_.distances.resize(source_.solids.size());
         flat_planes_.resize(source_.solids.size());
-        by_planes_.assign(source_.solids.size(), false);
+        primitives_.assign(source_.solids.size(), effect_triangles);
         if (description_.contact) hash_.add(*description_.contact);
         hash_.add(normalization_.center);
         hash_.add(static_cast<uint32_t>(normalization_.scale));
@@ -83,9 +84,11 @@ class Compiler {
         for (const SolidContacts& solid : bodies_.contacts.solids) scene_.reaches.push_back(solid.reach);
         compile_convex();
         compile_balls();
+        compile_disks();
         lights_ = normalize_lights(source_, normalization_, bodies_.convex);
         light_faces_.resize(lights_.size());
         find_convex_incidents(lights_, bodies_, incident_reach(), light_faces_);
+        find_disk_incidents(lights_, bodies_, scene_.solids, incident_reach(), light_faces_);
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
             scene_.solid_names.push_back(source_.solids[i].name);
             scene_.solids[i].material = source_.solids[i].material;
@@ -94,6 +97,7 @@ class Compiler {
         settle_on_faces();
         add_shared_planes(scene_, bodies_.contacts);
         list_shared_planes(scene_, bodies_, places_.boxes);
+        add_disks(scene_, source_, bodies_.disks, normalization_);
         find_near_balls(scene_, bodies_.balls, places_.boxes, flat_planes_);
         refuse_lights_on_balls();
         add_slabs();
@@ -125,7 +129,7 @@ class Compiler {
             bound_sphere(convex, solid);
             scene_.convex.push_back(convex.solid);
             places_.boxes[convex.solid] = convex.box;
-            by_planes_[convex.solid] = true;
+            primitives_[convex.solid] = effect_solids;
         }
     }
 
@@ -137,9 +141,32 @@ class Compiler {
             if (source_.materials[source_.solids[ball.solid].material].texture >= 0)
                 for (const dvec3& axis : ball.axes) hash_.add(axis);
             places_.boxes[ball.solid] = ball.box();
-            by_planes_[ball.solid] = true;
+            primitives_[ball.solid] = effect_spheres;
         }
         add_balls(scene_, bodies_.balls);
+    }
+
+    /// All of disks but what needs their planes in the scene's precision (add_disks).
+    void compile_disks() {
+        for (uint32_t i = 0; i < bodies_.disks.size(); ++i) {
+            const PlacedDisk& disk = bodies_.disks[i];
+            hash_.add(disk.solid);
+            hash_.add(disk.equation.normal);
+            hash_.add(disk.equation.offset);
+            hash_.add(disk.is_endless() ? dvec3(0) : disk.center);
+            hash_.add(disk.radius);
+            Solid& solid = scene_.solids[disk.solid];
+            solid = {};
+            solid.kind = SolidKind::sheet;
+            solid.first_slab = i;
+            solid.slab_count = 1;
+            solid.first_triangle = triangle_count_;
+            triangle_count_ += triangles_of_disk;
+            primitives_[disk.solid] = effect_planes;
+            flat_planes_[disk.solid] = disk.equation;
+            places_.boxes[disk.solid] = disk.is_endless() ? bodies_.sizes[disk.solid].box : disk.box();
+            if (disk.is_endless()) scene_.hulls[disk.solid].reach = INFINITY;
+        }
     }
 
     /// Shadow rays know whether a light is inside a ball, so it must not be on one.
@@ -201,6 +228,14 @@ class Compiler {
         });
     }
 
+    /// Whether a disk comes near a box.
+    bool meets_disk(const PaddedBox& box) const {
+        const dvec3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
+        for (const PlacedDisk& disk : bodies_.disks)
+            if (disk.distance(0.5 * (low + high)) <= length(high - low) + touching) return true;
+        return false;
+    }
+
     /// Finds solids that overlap no other. An optimization, skipped for scenes with very many pairs.
     void find_isolated_solids() {
         const SceneView<Real> view = scene_.view();
@@ -209,7 +244,7 @@ class Compiler {
         std::vector<PaddedBox> boxes;
         for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(primitive_box(view, p));
         for (uint32_t a = 0; a < view.convex.size; ++a) {
-            bool isolated = true;
+            bool isolated = !meets_disk(boxes[a]);
             for (uint32_t b = 0; b < primitives && isolated; ++b) {
                 bool apart = a == b;
                 for (int k = 0; k < 3; ++k)
@@ -268,7 +303,9 @@ class Compiler {
         for (uint32_t first = 0, end = 0; first < count; first = end) {
             for (size_t triangles = 0; end < count && end - first < most_at_once && triangles < most_triangles; ++end)
                 triangles += source_.solids[end].mesh.triangles.size();
-            const auto is_mesh = [&](uint32_t i) { return !source_.solids[i].polyhedron && !by_planes_[i]; };
+            const auto is_mesh = [&](uint32_t i) {
+                return !source_.solids[i].polyhedron && primitives_[i] == effect_triangles;
+            };
             prepared.resize(end - first);
             tbb::parallel_invoke(
                 [&] {
@@ -384,6 +421,14 @@ class Compiler {
                 light_distances(lights_, convex, light_faces_, normalization_.extent, 2 * incident_reach());
         for (const PlacedBall& ball : bodies_.balls)
             places_.distances[ball.solid] = light_distances(lights_, ball, normalization_.extent, 2 * incident_reach());
+        for (const PlacedDisk& disk : bodies_.disks) {
+            if (disk.is_endless())  // lights are no farther from the box than from the plane
+                for (const NormalizedLight& light : lights_)
+                    places_.boxes[disk.solid].add(light.position -
+                                                  disk.equation.distance(light.position) * disk.equation.normal);
+            places_.distances[disk.solid] =
+                light_distances(lights_, disk, light_faces_, normalization_.extent, 2 * incident_reach());
+        }
         const dvec3 bound =
             radiance_bound(source_, textures, places_, 1 / normalization_.factor, lights_, scene_.warnings);
         scale_ = radiance_scale(description_, bound, sizeof(Real) == sizeof(float));
@@ -502,7 +547,7 @@ class Compiler {
         std::vector<MaterialUse> uses;
         for (size_t i = 0; i < source_.solids.size(); ++i)
             uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place,
-                            source_.solids[i].closed, by_planes_[i], source_.solids[i].sphere != nullptr});
+                            source_.solids[i].closed, primitives_[i]});
         scene_.effect_reasons =
             explain_effects(description_, uses, light_on_face(source_, lights_, light_faces_), contact());
         scene_.effects = required_effects(scene_.effect_reasons);
@@ -514,6 +559,8 @@ class Compiler {
         if (contacts.planes.empty()) return "";
         const std::string &first = source_.solids[contacts.first[0]].place,
                           &second = source_.solids[contacts.first[1]].place;
+        if (source_.solids[contacts.first[0]].disk && first == second)
+            return first + " is a plane or a disk, whose plane all shares that touches it";
         std::string text = first == second ? "faces of " + first : "faces of " + first + " and " + second;
         text += " lie in one plane";
         if (contacts.pairs > 1)
@@ -541,7 +588,7 @@ class Compiler {
     std::vector<NormalizedLight> lights_;
     LightFaces light_faces_;
     SolidPlaces places_;
-    std::vector<bool> by_planes_;                            // each solid is given by planes, or a ball
+    std::vector<uint32_t> primitives_;                       // the effect of what each solid is made of
     std::vector<std::optional<PlaneEquation>> flat_planes_;  // of each flat sheet
     uint32_t triangle_count_ = 0;
     RadianceScale scale_;

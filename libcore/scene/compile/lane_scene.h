@@ -35,6 +35,7 @@ class OwnedLaneScene {
     std::vector<Solid> solids_;
     std::vector<IndexedSolid<Real>> convex_copies_;
     std::vector<Cluster<Real>> clusters_;
+    std::vector<Disk<Real>> disks_;
     std::vector<SheetPlane<Real>> planes_;
     std::vector<TriangleSides<Real>> sides_;
     std::vector<Incident> incidents_;

@@ -16,8 +16,7 @@ struct MaterialUse {
     const MaterialDescription* material = nullptr;
     std::string place;    // "/objects/2"
     bool closed = true;   // it has an inside
-    bool convex = false;  // a solid given by planes, or a sphere; else triangles
-    bool round = false;   // a sphere
+    uint32_t primitive = effect_triangles;  // the effect of what it is made of
 };
 
 /// The reasons for all effects, in bit order. `uses` in file order; the lights considered give light or are visible.
