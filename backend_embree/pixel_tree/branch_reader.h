@@ -287,9 +287,9 @@ class BranchReader {
     void fill(const Replay& replay, FaceMet& face, uint64_t key, Real t) const {
         const Solid& solid = scene_.solids[key_solid(key)];
         face.solid = key_solid(key);
-        face.triangle = solid.kind != SolidKind::convex;
-        face.round = is_ball(solid);
-        face.face = key_face(key) - (face.triangle ? solid.first_triangle : 0);
+        face.triangle = solid.kind != SolidKind::convex && !is_disk(solid);
+        face.round = is_ball(solid) || is_disk(solid);
+        face.face = key_face(key) - (solid.kind != SolidKind::convex ? solid.first_triangle : 0);
         face.crossing = key_kind(key);
         face.distance = length_of(replay, t);
     }

@@ -139,6 +139,7 @@ TEST(SceneDefaults, AreThoseOfTheTables) {
                                   "}, \"materials\": {\"m\": " + object(material_keys, "") + "}, \"objects\": [" +
                                   object(solid_keys, "\"solid\": \"cube\", \"material\": \"m\", " + edges) + ", " +
                                   object(sphere_keys, R"("solid": "sphere", "material": "m")") + ", " +
+                                  R"({"material": "m", "disk": )" + object(disk_shape_keys, "") + "}, " +
                                   object(box_keys, R"("solid": "box", "size": [1, 2, 3], "material": "m")") + ", " +
                                   object(convex_keys, R"("solid": "convex", "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0],
                                                          [0, 0, 1]], "material": "m")") +

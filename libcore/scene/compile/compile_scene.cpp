@@ -165,7 +165,12 @@ class Compiler {
             primitives_[disk.solid] = effect_planes;
             flat_planes_[disk.solid] = disk.equation;
             places_.boxes[disk.solid] = disk.is_endless() ? bodies_.sizes[disk.solid].box : disk.box();
-            if (disk.is_endless()) scene_.hulls[disk.solid].reach = INFINITY;
+            if (!disk.is_endless()) continue;
+            scene_.hulls[disk.solid].reach = INFINITY;
+            if (magnitude(disk.equation.offset) > horizon * normalization_.extent)
+                scene_.warnings.push_back(source_.solids[disk.solid].place +
+                                          ": the plane is not seen: it is more than 4,096 times as far away as the "
+                                          "scene is large");
         }
     }
 

@@ -9,7 +9,6 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double horizon = 0x1p12;  // M
 constexpr double square_side = 2;   // M: half the side of what stands for a plane, which reaches over the scene
 
 /// The axes of a disk's texture: that of u is the scene's x axis, or the y axis for normals near that, turned into the
