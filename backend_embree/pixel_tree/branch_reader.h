@@ -30,8 +30,7 @@ class BranchReader {
             branch.end = BranchEnd::pruned;
             branch.ledger = less(trace.end.pruned, trace.begin.pruned);
         } else {
-            Replay replay{trace,   branch,       tree,
-                          waiting, trace.weight, 0};
+            Replay replay{trace, branch, tree, waiting, trace.weight, 0};
             const Real from = begin_of(trace.looks[0].ray);
             replay.ahead = (from < Real(0) ? 0 : trace.start) - double(from);
             read_way(replay);

@@ -1,7 +1,7 @@
 // Planes without end and disks of compiled scenes: size, shared planes, textures, lights, effects and limits.
 #include <gtest/gtest.h>
 
-#include "cistula/traversal/bvh.h"
+#include "cistula/traversal/brute.h"
 #include "scene/compile/compiled_scene.h"
 #include "scene/compile/materials/required_effects.h"
 #include "scene/compile/solids/compile_disks.h"
@@ -118,10 +118,11 @@ TYPED_TEST(Planes, AreMetFromBeyondTheScene) {
         const Real moved = start_near<Effects<all_effects>>(view, ray);
         std::vector<std::pair<uint32_t, double>> found;
         for (;;) {
-            const Hit<Real> hit = BvhIntersector<Real>{view}.closest(ray);
+            const Hit<Real> hit = BruteIntersector<Real>{view}.closest(ray);
             if (!hit.found()) return found;
             found.push_back({key_solid(hit.key), double(hit.t + moved)});
-            if (media_change(key_kind(hit.key)) != 0) ray.media.add(key_solid(hit.key), media_change(key_kind(hit.key)));
+            if (media_change(key_kind(hit.key)) != 0)
+                ray.media.add(key_solid(hit.key), media_change(key_kind(hit.key)));
             ray.after = {hit.t, hit.key};
         }
     };
@@ -171,22 +172,26 @@ TEST(PlanesOfScenes, AreAtMostAFew) {
     SceneDescription scene = empty_scene();
     const auto add = [&] {
         const auto i = double(scene.objects.size());
-        add_object(scene, scene.objects.size() % 2 == 0 ? DiskObject::plane({0, 0, 1}, i) : disk({1, 2, i}, {1, 1, 1}, 1));
+        add_object(scene,
+                   scene.objects.size() % 2 == 0 ? DiskObject::plane({0, 0, 1}, i) : disk({1, 2, i}, {1, 1, 1}, 1));
     };
     while (scene.objects.size() < most_disks) add();
     EXPECT_EQ(compile_scene<float>(scene)->disks.size(), most_disks);
     add();
-    EXPECT_ERROR(compile_scene<float>(scene), ExitCode::usage, "more than 64 planes and disks");
+    EXPECT_ERROR(compile_scene<float>(scene), ExitCode::usage,
+                 "test.json: /objects/64: more than 64 planes and disks; make some of them quads or triangles");
 }
 
 TEST(PlanesOfScenes, NumbersOfProgramsAreChecked) {
     SceneDescription scene = empty_scene();
     add_object(scene, disk({0, 0, 0}, {0, 0, 0}, 1));
-    EXPECT_ERROR(compile_scene<float>(scene), ExitCode::usage, "the normal is 0");
+    EXPECT_ERROR(compile_scene<float>(scene), ExitCode::usage, "test.json: /objects/0: the normal is 0");
     scene.objects[0].shape = disk({0, 0, 0}, {0, 0, 1}, -1);
-    EXPECT_ERROR(compile_scene<float>(scene), ExitCode::usage, "radius");
+    EXPECT_ERROR(compile_scene<float>(scene), ExitCode::usage,
+                 "test.json: /objects/0: radius: expected a number from 1e-30 to 1e30");
     scene.objects[0].shape = disk({0, NAN, 0}, {0, 0, 1}, 1);
-    EXPECT_ERROR(compile_scene<float>(scene), ExitCode::usage, "center");
+    EXPECT_ERROR(compile_scene<float>(scene), ExitCode::usage,
+                 "test.json: /objects/0: center: expected [x, y, z], each from -1e30 to 1e30");
 }
 
 }  // namespace

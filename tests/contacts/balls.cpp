@@ -402,8 +402,7 @@ class CheckedBalls {
     void check(const Ray<Real>& ray, const Hit<Real>& hit) const {
         ++counts_.lines;
         const ExactPoint o(ray.origin), d(ray.direction);
-        const Exact begin = begin_of(ray),
-                    end = std::max(Exact(hit.found() ? hit.t : Real(8)), begin);
+        const Exact begin = begin_of(ray), end = std::max(Exact(hit.found() ? hit.t : Real(8)), begin);
         const auto at = [&](Exact t) { return o + d * t; };
         for (uint32_t i = 0; i < scene.solids.size; ++i) {
             const Solid& solid = scene.solids[i];
@@ -504,10 +503,11 @@ size_t walk_kind(const BallKind& kind, Sheet sheet, bool afar = false) {
         else
             walk_balls<Real, BruteIntersector<Real>>(ideal, compiled->view(), random, sum);
     }
-    std::printf("%-6s %-6s %-22s lines %7zu shadows %7zu | missed %zu stays %zu solid %zu passed %zu off %zu again %zu "
-                "shadow %zu\n",
-                RealTraits<Real>::name, sheet_names[int(sheet)], kind.name, sum.lines, sum.shadows, sum.missed,
-                sum.stays, sum.solid, sum.passed, sum.off, sum.again, sum.shaded);
+    std::printf(
+        "%-6s %-6s %-22s lines %7zu shadows %7zu | missed %zu stays %zu solid %zu passed %zu off %zu again %zu "
+        "shadow %zu\n",
+        RealTraits<Real>::name, sheet_names[int(sheet)], kind.name, sum.lines, sum.shadows, sum.missed, sum.stays,
+        sum.solid, sum.passed, sum.off, sum.again, sum.shaded);
     EXPECT_GT(sum.lines, 4000u) << kind.name;
     return sum.faults();
 }

@@ -50,7 +50,7 @@ TEST(ScenePlanes, EveryNumberArrives) {
     EXPECT_EQ(plane.normal, glm::dvec3(0, 3, 4));
     EXPECT_NEAR(length(plane.center - glm::dvec3(0, 1.2, 1.6)), 0, 1e-15);
     EXPECT_WRONG_OBJECT(R"({"plane": [0, 0, 0, 1], "material": "glass"})",
-                        "/plane: the normal is 0: give the direction across the plane");
+                        "/plane: the normal is 0; give the direction across the plane");
     EXPECT_WRONG_OBJECT(R"({"plane": [0, 0, 1], "material": "glass"})",
                         "/plane: expected a plane [nx, ny, nz, d], found an array of 3");
     EXPECT_WRONG_OBJECT(R"({"plane": [0, 0, 1, null], "material": "glass"})",
@@ -68,7 +68,7 @@ TEST(SceneDisks, EveryKeyArrives) {
     EXPECT_EQ(disk.radius, 7);
     EXPECT_EQ(shape_of<DiskObject>(R"({"disk": {}, "material": "tiles"})").radius, 1);
     EXPECT_WRONG_OBJECT(R"({"disk": {"normal": [0, 0, 0]}, "material": "glass"})",
-                        "/disk/normal: the normal is 0: give the direction across the disk");
+                        "/disk/normal: the normal is 0; give the direction across the disk");
     EXPECT_WRONG_OBJECT(R"({"disk": {"radius": 0}, "material": "glass"})",
                         "/disk/radius: expected a number from 1e-30 to 1e30, found 0");
     EXPECT_WRONG_OBJECT(R"({"disk": {"radius": -1}, "material": "glass"})",

@@ -119,8 +119,8 @@ class ContactStart {
         return ahead == (slope > Real(0)) ? -1 : 1;
     }
 
-    /// The side on which all corners of the triangle that was hit lie, or all of the disk; if it lies in the plane itself, as a triangle
-    /// beside one that shares the plane does, the ray's side of it; else 0.
+    /// The side on which all corners of the triangle that was hit lie, or all of the disk; if it lies in the plane
+    /// itself, as a triangle beside one that shares the plane does, the ray's side of it; else 0.
     CISTULA_INLINE int side_of_triangle(const SharedPlane<Real>& plane) const {
         bool above = false;
         bool below = false;

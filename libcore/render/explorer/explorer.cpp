@@ -144,7 +144,7 @@ std::vector<Wireframe> wireframes(const SceneSource& source, size_t most) {
             continue;
         }
         if (solid.disk) {
-            if (!solid.disk->is_endless()) 
+            if (!solid.disk->is_endless())
                 add_circle(solid.disk->center, solid.disk->normal, solid.disk->radius, wires);
             continue;
         }

@@ -95,8 +95,8 @@ size_t CompiledScene<Real>::memory() const {
     for (const Hull& hull : hulls) outlined += bytes_of(hull.points);
     return outlined + bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) +
            bytes_of(shared_planes) + bytes_of(slab_planes) + bytes_of(triangle_planes) + bytes_of(near_planes) +
-           bytes_of(plane_solids) + bytes_of(balls) + bytes_of(ball_planes) + bytes_of(disks) + bytes_of(clusters) + bytes_of(uvs) +
-           bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(visible_lights) +
+           bytes_of(plane_solids) + bytes_of(balls) + bytes_of(ball_planes) + bytes_of(disks) + bytes_of(clusters) +
+           bytes_of(uvs) + bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(visible_lights) +
            bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
            bytes_of(visible_light_tree) + bytes_of(light_groups);
 }

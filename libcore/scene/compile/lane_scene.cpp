@@ -190,8 +190,7 @@ template <class Real>
 size_t OwnedLaneScene<Real>::memory() const {
     const auto bytes = [](const auto&... arrays) { return (... + bytes_of(arrays)); };
     return sizeof *this + bytes(numbers_, places_, convex_, convex_places_, tree_items_, solids_, convex_copies_,
-                                clusters_, planes_, sides_, incidents_, tree_, plane_solids_, plane_bodies_,
-                                disks_);
+                                clusters_, planes_, sides_, incidents_, tree_, plane_solids_, plane_bodies_, disks_);
 }
 
 template <class Real>

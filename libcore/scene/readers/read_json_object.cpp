@@ -273,8 +273,7 @@ ObjectDescription read_json_object(const JsonValue& value, const ObjectContext& 
     for (const Form& form : forms) {
         if (!value.json().contains(form.key)) continue;
         if (chosen)
-            value.fail(
-                fmt::format("expected one of {}, found both '{}' and '{}'", known_forms, chosen->key, form.key));
+            value.fail(fmt::format("expected one of {}, found both '{}' and '{}'", known_forms, chosen->key, form.key));
         chosen = &form;
     }
     if (!chosen) fail_without_form(value);

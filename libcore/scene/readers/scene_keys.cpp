@@ -294,12 +294,10 @@ constexpr KeyTable keyed_keys{"keyed", keyed_list};
 
 std::span<const KeyTable* const> all_key_tables() {
     static constexpr const KeyTable* tables[] = {
-        &scene_keys,       &film_keys,         &camera_keys,          &path_keys,
-        &cylindrical_keys, &texture_file_keys, &texture_checker_keys, &material_keys,
-        &solid_keys,       &box_keys,          &convex_keys,          &prism_keys,
-        &edge_lights_keys, &quad_keys,         &plane_keys,           &disk_keys,
-        &disk_shape_keys,  &triangles_keys,    &triangle_list_keys,   &mesh_keys,
-        &light_keys,       &frame_keys,        &keyed_keys};
+        &scene_keys,           &film_keys,     &camera_keys, &path_keys,  &cylindrical_keys, &texture_file_keys,
+        &texture_checker_keys, &material_keys, &solid_keys,  &box_keys,   &convex_keys,      &prism_keys,
+        &edge_lights_keys,     &quad_keys,     &plane_keys,  &disk_keys,  &disk_shape_keys,  &triangles_keys,
+        &triangle_list_keys,   &mesh_keys,     &light_keys,  &frame_keys, &keyed_keys};
     return tables;
 }
 

@@ -126,9 +126,8 @@ void find_disk_incidents(const std::vector<NormalizedLight>& lights, const Place
     for (size_t i = 0; i < lights.size(); ++i)
         for (const PlacedDisk& disk : bodies.disks) {
             if (!lights[i].lights()) break;
-            const double range =
-                point_tolerance(bodies.contacts.solids[disk.solid].reach, disk.equation, lights[i].position,
-                                lights[i].half_unit, bodies.sizes[disk.solid].box);
+            const double range = point_tolerance(bodies.contacts.solids[disk.solid].reach, disk.equation,
+                                                 lights[i].position, lights[i].half_unit, bodies.sizes[disk.solid].box);
             if (disk.distance(lights[i].position) <= max_or_second(range, least))
                 faces[i].push_back({{disk.solid, solids[disk.solid].first_triangle}, disk.equation});
         }

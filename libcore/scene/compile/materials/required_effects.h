@@ -14,8 +14,8 @@ namespace cistula {
 /// A material in use: the object that uses it and the kind of that object.
 struct MaterialUse {
     const MaterialDescription* material = nullptr;
-    std::string place;    // "/objects/2"
-    bool closed = true;   // it has an inside
+    std::string place;                      // "/objects/2"
+    bool closed = true;                     // it has an inside
     uint32_t primitive = effect_triangles;  // the effect of what it is made of
 };
 

@@ -9,7 +9,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double square_side = 2;   // M: half the side of what stands for a plane, which reaches over the scene
+constexpr double square_side = 2;  // M: half the side of what stands for a plane, which reaches over the scene
 
 /// The axes of a disk's texture: that of u is the scene's x axis, or the y axis for normals near that, turned into the
 /// plane.
@@ -98,7 +98,8 @@ void add_disks(CompiledScene<Real>& scene, const SceneSource& source, const std:
         const int texture = source.materials[solid.material].texture;
         for (size_t k = 0; k < 2; ++k) {
             disk.axes[k] = Vec3<Real>(axes.of[k] / unit);
-            double shift = endless ? dot(axes.of[k], normalization.center) : 0.5 - dot(axes.of[k], placed.center) / unit;
+            double shift =
+                endless ? dot(axes.of[k], normalization.center) : 0.5 - dot(axes.of[k], placed.center) / unit;
             if (texture >= 0) shift = without_periods(shift, source.description->textures[size_t(texture)], k);
             disk.shift[k] = Real(shift);
         }

@@ -72,8 +72,8 @@ dvec3 on_floor(const dvec3& from, const dvec3& direction) {
 /// Expects each pixel's radiance to be that of expected(from, direction), in the lengths of the scene as it is
 /// described; none: in doubt.
 template <class Expected>
-void expect_pixels(const Stage& stage, Tally& tally, const SceneDescription& scene, const Place& place,
-                   uint64_t number, const Expected& expected) {
+void expect_pixels(const Stage& stage, Tally& tally, const SceneDescription& scene, const Place& place, uint64_t number,
+                   const Expected& expected) {
     const Film film = stage.film(scene);
     const dvec3 from = place.turned_back((scene.camera.position - place.center) / place.scale);
     for_each_view(film, scene, [&](size_t pixel, const dvec3& direction) {
@@ -194,10 +194,12 @@ void as_a_quad(Stage& stage, Tally& tally) {
         scene.ambient = dvec3(0.2);
         scene.materials[1] = glassy ? glass(1.5) : scene.materials[1];
         scene.materials[1].name = "ball";
-        add_object(scene, solid_object(PlatonicSolid::cube, place({1.6, 0.5, 0.5}), 0.75 * place.scale * 2 / std::sqrt(3.0)),
+        add_object(scene,
+                   solid_object(PlatonicSolid::cube, place({1.6, 0.5, 0.5}), 0.75 * place.scale * 2 / std::sqrt(3.0)),
                    add_material(scene, glass(1.3)));
-        add_object(scene, parallelogram(place({-1.5, -1, -0.5}), place.turned({0, place.scale * 2, 0}),
-                                        place.turned({0, 0, place.scale})),
+        add_object(scene,
+                   parallelogram(place({-1.5, -1, -0.5}), place.turned({0, place.scale * 2, 0}),
+                                 place.turned({0, 0, place.scale})),
                    add_material(scene, paper(dvec3(0.7, 0.2, 0.2))));
         TrianglesObject floor = floor_of_half(30);
         for (dvec3& p : floor.vertices) p = place(p);
