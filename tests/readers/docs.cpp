@@ -88,7 +88,7 @@ TEST(ScenePage, ExampleIsValidAndUsesEveryKey) {
     const size_t start = markdown.find(fence) + fence.size();
     const std::string example = markdown.substr(start, markdown.find("```", start) - start);
     const SceneDescription scene = read_scene_text(example, "docs/scene.md", "");
-    EXPECT_EQ(scene.objects.size(), 8u);
+    EXPECT_EQ(scene.objects.size(), 10u);
     std::set<std::string> used;
     const std::function<void(const Json&)> collect = [&](const Json& json) {
         for (const auto& item : json.items()) {

@@ -93,8 +93,8 @@ struct alignas(16) Solid {
     uint32_t flat;            // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
                               // on it does not meet it again
     uint32_t may_touch;       // convex, mesh: 1 if its padded box meets that of another such solid
-    uint32_t isolated;        // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
-                              // hits next is its own face
+    uint32_t isolated;        // convex: 1 if nothing else is inside it: whatever a ray inside it hits next is its
+                              // own face
     uint32_t first_near, near_count;  // the shared planes that reach it: near_planes[first_near + i]
 };
 
@@ -250,6 +250,22 @@ struct Texture {
     double repeat[2];     // factors of uv
 };
 
+enum class SkyKind : uint32_t { none, gradient, picture };
+
+/// A color of a gradient, at an angle to its axis.
+struct SkyStop {
+    double cosine;
+    Vec3<double> color;
+};
+
+/// What is around a scene in place of a background of one color.
+struct Sky {
+    SkyKind kind = SkyKind::none;
+    uint32_t texture = 0;  // of a picture
+    double scale = 1;      // of its texels
+    Vec3<double> axes[3];  // x, y and z of a picture, unit; a gradient's axis is the last
+};
+
 /// Maximum depth of a tree, and so the size of traversal stacks.
 inline constexpr int max_tree_depth = 48;
 
@@ -306,6 +322,8 @@ struct SceneView {
     Span<uint32_t> tree_items;
     Span<LightNode> visible_light_tree;  // over visible_lights; empty where there are few
     Span<uint32_t> light_groups;         // of each of lights
+    Span<SkyStop> sky_stops;             // of a gradient
+    Sky sky;
     Vec3<Real> background;
     Vec3<Real> bound;    // radiance bound B per channel, at most 1, slack included
     Real largest_bound;  // largest component of bound

@@ -15,7 +15,9 @@ void add_planes(Cases& cases);
 void add_refraction(Cases& cases);
 void add_shadows(Cases& cases);
 void add_size(Cases& cases);
+void add_sky(Cases& cases);
 void add_sums(Cases& cases);
+void add_time(Cases& cases);
 
 const std::vector<Case>& all_cases() {
     static const std::vector<Case> all = [] {
@@ -37,7 +39,9 @@ const std::vector<Case>& all_cases() {
         add("refraction/", add_refraction);
         add("shadows/", add_shadows);
         add("size/", add_size);
+        add("sky/", add_sky);
         add("sums/", add_sums);
+        add("time/", add_time);
         return cases.all;
     }();
     return all;
