@@ -179,6 +179,7 @@ class Compiler {
         for (uint32_t i = 0; i < bodies_.disks.size(); ++i) {
             const PlacedDisk& disk = bodies_.disks[i];
             hash_.add(disk.solid);
+            hash_.add(disk.object->normal);
             hash_.add(disk.equation.normal);
             hash_.add(disk.equation.offset);
             hash_.add(disk.is_endless() ? dvec3(0) : disk.center);
@@ -507,7 +508,7 @@ class Compiler {
         std::vector<double> sizes(source_.materials.size());  // of the largest solid of each
         for (size_t i = 0; i < places_.boxes.size(); ++i) {
             double& size = sizes[source_.solids[i].material];
-            if (!places_.boxes[i].empty())
+            if (!places_.boxes[i].empty() && !source_.solids[i].disk)
                 size = max_or_second(length(places_.boxes[i].high - places_.boxes[i].low), size);
         }
         for (size_t i = 0; i < source_.materials.size(); ++i) {
