@@ -384,7 +384,8 @@ class CheckedBalls {
 
     /// 1 if a segment surely crosses a quad, 0 if surely not, else -1.
     int crosses(const Quad& quad, const ExactPoint& from, const ExactPoint& to) const {
-        const Exact reach = ideal_.afar ? 512 : 1;  // lines come from as far
+        const Exact come_from = ideal_.afar ? 512 : 1;  // as lines that end here may have
+        const Exact reach = std::max({come_from, exact_length(from) / 2, exact_length(to) / 2});
         const Exact a = off_plane(quad, from), b = off_plane(quad, to), slack = 3 * tolerance() * reach;
         if (ideal_.opaque ? std::abs(b) < slack : std::abs(a) < slack || std::abs(b) < slack) return -1;
         if (ideal_.opaque ? a < -slack || b > 0 : (a > 0) == (b > 0)) return 0;

@@ -262,18 +262,15 @@ class Compiler {
         });
     }
 
-    /// Whether a disk may come into a convex solid in a box; what only touches a ball does not.
+    /// Whether a disk comes near a convex solid in a box: lines in a ball that only touches it must know of it, too
+    /// (docs/rules.md, 14, line 14).
     bool meets_disk(const SceneView<Real>& view, uint32_t index, const PaddedBox& box) const {
         const dvec3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
-        dvec3 center = 0.5 * (low + high);
-        double reach = 0.5 * length(high - low) + touching;
-        if (is_ball(view.solids[index])) {
-            const Ball<Real>& ball = view.balls[view.solids[index].first_slab];
-            center = dvec3(ball.center);
-            reach = double(ball.radius) - double(incidence<Real>) * double(view.extent);
-        }
+        const bool ball = is_ball(view.solids[index]);
+        const double reach =
+            touching + (ball ? double(view.balls[view.solids[index].first_slab].radius) : 0.5 * length(high - low));
         return std::any_of(bodies_.disks.begin(), bodies_.disks.end(),
-                           [&](const PlacedDisk& disk) { return disk.distance(center) < reach; });
+                           [&](const PlacedDisk& disk) { return disk.distance(0.5 * (low + high)) <= reach; });
     }
 
     /// Finds solids inside of which nothing else is. An optimization, skipped for scenes with very many pairs.
