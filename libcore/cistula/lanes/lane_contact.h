@@ -317,12 +317,13 @@ CISTULA_INLINE void correct_starts(const LaneScene<T>& scene, const Ray<Lanes<T,
             leave_bodies(scene, number, up, same, around);
         });
         MaskOf<Real> single = false;  // lanes that are done by themselves
+        const Real factor = scene.disks.empty() ? Real(1) : far_factor(scene.extent, met);
         for_each_value(active, solids, [&](uint32_t index, const auto& same) {
             const Solid& solid = scene.solids[index];
             for (uint32_t i = 0; i < solid.near_count; ++i) {
                 const uint32_t number = scene.near_planes[solid.first_near + i];
                 const SharedPlane<T>& plane = scene.shared_planes[number];
-                const Real near(near_start<T> * plane.slack);
+                const Real near = Real(near_start<T>) * factor * Real(plane.slack);
                 const auto far =
                     (magnitude(distance_from(plane, start)) > near) & (magnitude(distance_from(plane, met)) > near);
                 single |= same & (own != Index(ScalarOf<Index>(number))) & !far;

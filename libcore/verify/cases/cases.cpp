@@ -11,6 +11,7 @@ void add_metamorphic(Cases& cases);
 void add_mirrors(Cases& cases);
 void add_overlap(Cases& cases);
 void add_pieces(Cases& cases);
+void add_planes(Cases& cases);
 void add_refraction(Cases& cases);
 void add_shadows(Cases& cases);
 void add_size(Cases& cases);
@@ -35,6 +36,7 @@ const std::vector<Case>& all_cases() {
         add("mirrors/", add_mirrors);
         add("overlap/", add_overlap);
         add("pieces/", add_pieces);
+        add("planes/", add_planes);
         add("refraction/", add_refraction);
         add("shadows/", add_shadows);
         add("size/", add_size);
