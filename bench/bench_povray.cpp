@@ -173,12 +173,14 @@ std::filesystem::path write_sky_scene(const std::filesystem::path& folder) {
     return path;
 }
 
-/// A file of mesh.json's scene, without what POV-Ray lacks: colored highlights and our textures.
+/// A file of mesh.json's scene, without what POV-Ray lacks or does otherwise: colored highlights, our textures,
+/// normals.
 std::filesystem::path write_mesh_scene(const std::filesystem::path& folder) {
     nlohmann::json scene = nlohmann::json::parse(std::ifstream(scene_file("mesh.json")));
     scene.erase("$schema");
     scene["materials"]["copper"].erase("specular_color");
     scene["textures"] = {{"marble", {{"checker", {0.8, 0.3}}, {"repeat", {4, 4}}}}};
+    scene["objects"][0]["smooth"] = false;
     scene["objects"][0]["mesh"] = std::filesystem::absolute(scene_file("knot.ply")).string();
     const std::filesystem::path path = folder / "knot_between_mirrors.json";
     write_file_atomically(path.string(), scene.dump(2));

@@ -32,7 +32,7 @@ inline constexpr KernelShape kernel_shapes[] = {
     {4, {7, 4}, {6, 4}},  // mirrors
     {4, {6, 4}, {6, 4}},  // clear bodies
     {4, {6, 4}, {6, 4}},  // colors and visible lights
-    {8, {3, 2}, {3, 2}},  // everything but spheres
+    {8, {3, 2}, {3, 2}},  // everything but spheres and smooth meshes
     {8, {3, 2}, {3, 2}},  // everything
     {8, {3, 2}, {3, 2}},  // everything and a budget
     {8, {3, 2}, {3, 2}},  // everything and layers

@@ -30,8 +30,9 @@ class BranchReader {
             branch.end = BranchEnd::pruned;
             branch.ledger = less(trace.end.pruned, trace.begin.pruned);
         } else {
-            Replay replay{trace,   branch,       tree,
-                          waiting, trace.weight, trace.start - max_or_second(trace.looks[0].ray.after.t, Real(0))};
+            Replay replay{trace, branch, tree, waiting, trace.weight, 0};
+            const Real from = begin_of(trace.looks[0].ray);
+            replay.ahead = (from < Real(0) ? 0 : trace.start) - double(from);
             read_way(replay);
         }
         tree.branches[node] = std::move(branch);
@@ -57,7 +58,7 @@ class BranchReader {
     void read_way(Replay& replay) const {
         const auto& looks = replay.trace.looks;
         Ray<Real> ray = looks[0].ray;
-        replay.branch.origin = to_scene(along(ray.origin, max_or_second(ray.after.t, Real(0)), ray.direction));
+        replay.branch.origin = to_scene(along(ray.origin, begin_of(ray), ray.direction));
         replay.branch.direction = Vec3<double>(ray.direction);
         Absorption<true> absorption;
         absorption.begin(scene_, ray.media, ray.after.t);
@@ -126,27 +127,28 @@ class BranchReader {
         out.material = s.material;
         out.t = double(event.hit.t) * frame_.unit_length;
         out.point = to_scene(s.point);
-        out.normal = Vec3<double>(s.normal);
+        out.normal = Vec3<double>(s.shading);
+        if (s.smooth) out.face_normal = Vec3<double>(s.normal);
         out.color = Vec3<double>(s.color);
         out.before = solids_of(ray.media);
         out.beyond = solids_of(event.beyond);
         out.index_before = index_of(scene_, ray.media);
         out.index_beyond = index_of(scene_, event.beyond);
-        out.cosine = -double(dot(ray.direction, s.normal));
+        out.cosine = -double(dot(ray.direction, s.shading));
         const bool sheet = out.crossing == CrossingKind::sheet;
         take_opaque_index(scene_, m, m.fresnel != 0 && !sheet, out.index_beyond);
         const InterfaceSplit<Real> split =
-            split_at<Real, E>(scene_, m, ray.direction, s.normal, ray.media, event.beyond, sheet);
+            split_at<Real, E>(scene_, m, ray.direction, s.shading, ray.media, event.beyond, sheet, s.normal, s.smooth);
         out.local = double(m.local);
         out.mirrored = double(split.reflection);
         out.through = Vec3<double>(split.filter);
         out.bends = split.bends;
         if (split.bends) {
             const Refraction<Real> refraction =
-                refracted<Real>(ray.direction, s.normal, out.index_before, out.index_beyond);
-            out.total = refraction.total;
-            if (!refraction.total) out.bent_cosine = -double(dot(refraction.direction, s.normal));
-            if (m.fresnel != 0 && !sheet) out.fresnel = double(refraction.reflectance);
+                refracted<Real>(ray.direction, s.shading, out.index_before, out.index_beyond);
+            out.total = split.total;
+            if (!out.total) out.bent_cosine = -double(dot(refraction.direction, s.shading));
+            if (m.fresnel != 0 && !sheet) out.fresnel = out.total ? 1 : double(refraction.reflectance);
         } else if (m.fresnel != 0 && !sheet) {
             out.fresnel = 0;
         }
@@ -227,7 +229,7 @@ class BranchReader {
             contribution.cosine = double(aim.cosine);
         }
         void behind(uint32_t i, const Light<Real>& light) const {
-            aim(contribution(i), LightAim<Real>::of(light, s));
+            aim(contribution(i), LightAim<Real>::of(light, s.viewer_side, s.shading));
             contribution(i).fate = LightFate::behind;
         }
         void unshadowed(uint32_t i, const LightAim<Real>& to_light, const Vec3<Real>& lit) const {
@@ -258,6 +260,8 @@ class BranchReader {
             ShadowSum<E> sum;
             if (scene_.solids[solid].kind == SolidKind::convex)
                 shadow_convex<Real, E>(scene_, solid, shadow, sum);
+            else if (is_disk(scene_.solids[solid]))
+                sum.cross(scene_.materials[scene_.solids[solid].material]);
             else
                 shadow_cluster<Real, E>(scene_, slot / cluster_lanes, shadow, triangle_ray, sum);
             bool takes = sum.opaque != 0;
@@ -283,9 +287,9 @@ class BranchReader {
     void fill(const Replay& replay, FaceMet& face, uint64_t key, Real t) const {
         const Solid& solid = scene_.solids[key_solid(key)];
         face.solid = key_solid(key);
-        face.triangle = solid.kind != SolidKind::convex;
-        face.round = is_ball(solid);
-        face.face = key_face(key) - (face.triangle ? solid.first_triangle : 0);
+        face.triangle = solid.kind != SolidKind::convex && !is_disk(solid);
+        face.round = is_ball(solid) || is_disk(solid);
+        face.face = key_face(key) - (solid.kind != SolidKind::convex ? solid.first_triangle : 0);
         face.crossing = key_kind(key);
         face.distance = length_of(replay, t);
     }

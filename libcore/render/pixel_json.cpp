@@ -166,6 +166,7 @@ class PixelJson {
         }
         json["point"] = vector(s.point);
         json["normal"] = vector(s.normal);
+        if (s.face_normal) json["face_normal"] = vector(*s.face_normal);
         json["angle"] = number(degrees_of(s.cosine));
         json["material"] = report_.names.materials[s.material].name;
         json["color"] = vector(s.color);

@@ -164,8 +164,10 @@ class TreeText {
                                 short_number(branch.distance)));
         for (const FaceMet& also : s.also)
             line(depth, fmt::format("in the same place {} {}", passes(also), face(also)));
-        line(depth, fmt::format("normal {}, {:.1f} degrees from the ray; material {}, color {}", point(s.normal),
-                                degrees_of(s.cosine), called(report_.names.materials[s.material]), color(s.color)));
+        line(depth,
+             fmt::format("normal {}, {:.1f} degrees from the ray{}; material {}, color {}", point(s.normal),
+                         degrees_of(s.cosine), s.face_normal ? ", where the face's is " + point(*s.face_normal) : "",
+                         called(report_.names.materials[s.material]), color(s.color)));
         write_media(depth, s);
         std::vector<std::string> shares;
         if (s.local > 0) shares.push_back("local " + short_number(s.local));

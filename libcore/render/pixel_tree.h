@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/error.h"
@@ -24,7 +25,7 @@ struct FaceMet {
     uint32_t solid = 0;
     uint32_t face = 0;      // face of a convex solid, or number of the triangle in its object
     bool triangle = false;  // `face` is a triangle
-    bool round = false;     // the solid is a sphere, which has no faces
+    bool round = false;     // the solid is a sphere, a disk or a plane, which has no faces
     CrossingKind crossing = CrossingKind::enter;
     double distance = 0;  // from the start of the branch
 };
@@ -57,6 +58,7 @@ struct PixelSurface : FaceMet {
     double t = 0;               // along the ray's line, which starts at its last refraction or reflection
     std::vector<FaceMet> also;  // other crossings that rounding cannot tell from this one
     glm::dvec3 point{0}, normal{0}, color{0};  // normal: toward the viewer; color: texture included
+    std::optional<glm::dvec3> face_normal;     // of a smooth mesh, whose normal is another
     std::vector<uint32_t> before, beyond;      // solids around the point on either side, highest priority first
     double index_before = 1, index_beyond = 1;
     double cosine = 1;  // of the angle between ray and normal

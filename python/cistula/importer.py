@@ -36,6 +36,7 @@ class Part:
     material: str = ""
     keys: dict[str, Any] | None = None  # of the material; None: the file says nothing of it
     map: str = ""  # the picture of its color, as the file names it
+    normals: Array | None = None  # N x 3; zeros where the file has none
 
     def welded(self) -> Array:
         """Its triangles with one number for all vertices at a place."""
@@ -50,12 +51,16 @@ class Part:
 
     def ply(self) -> bytes:
         """It as a binary PLY, in the vertices' own numbers: floats where those suffice."""
-        rows = self.vertices if self.uvs is None else np.hstack([self.vertices, self.uvs * [1, -1] + [0, 1]])
+        columns, names = [self.vertices], ["x", "y", "z"]
+        if self.uvs is not None:
+            columns, names = [*columns, self.uvs * [1, -1] + [0, 1]], [*names, "u", "v"]
+        if self.normals is not None:
+            columns, names = [*columns, self.normals.astype("f4").astype(float)], [*names, "nx", "ny", "nz"]
+        rows = np.hstack(columns)
         rows, inverse = np.unique(rows[self.triangles.reshape(-1)] + 0.0, axis=0, return_inverse=True)
         kind = "float" if np.array_equal(rows, rows.astype("f4"), equal_nan=True) else "double"
         faces = np.zeros(len(self.triangles), [("count", "u1"), ("corners", "<u4", 3)])
         faces["count"], faces["corners"] = 3, inverse.reshape(-1, 3)
-        names = ["x", "y", "z", "u", "v"][:rows.shape[1]]
         head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(rows)}", *(f"property {kind} {n}" for n in names),
                 f"element face {len(faces)}", "property list uchar uint vertex_indices", "end_header", ""]
         return "\n".join(head).encode() + rows.astype("<f4" if kind == "float" else "<f8").tobytes() + faces.tobytes()
@@ -110,8 +115,8 @@ def read_mesh(path: Path) -> Mesh:
         return read_stl(path)
     from cistula import _core
     found, remarks, files = _core.read_mesh(str(path))
-    parts = [Part(path.stem if name == str(i) else name, vertices, triangles, uvs, material, keys, picture)
-             for i, (name, vertices, triangles, uvs, keys, picture, material) in enumerate(found)]
+    parts = [Part(path.stem if name == str(i) else name, vertices, triangles, uvs, material, keys, picture, normals)
+             for i, (name, vertices, triangles, uvs, normals, keys, picture, material) in enumerate(found)]
     joined: dict[str, list[Part]] = {}
     for number, part in enumerate(parts):  # open parts of a material may close one another, as render has it
         joined.setdefault(str(number) if len(parts) == 1 or part.is_closed() else "open " + part.material, []).append(part)
@@ -125,11 +130,15 @@ def join(parts: list[Part]) -> Part:
     if len(parts) == 1:
         return first
     starts = np.cumsum([0] + [len(part.vertices) for part in parts])
-    with_uvs = any(part.uvs is not None for part in parts)
-    uvs = np.vstack([np.zeros((len(p.vertices), 2)) if p.uvs is None else p.uvs for p in parts]) if with_uvs else None
+    def stacked(of_parts: list[Array | None], columns: int) -> Array | None:
+        if all(one is None for one in of_parts):
+            return None
+        return np.vstack([np.zeros((len(p.vertices), columns)) if one is None else one for p, one in zip(parts, of_parts)])
+
+    uvs, normals = stacked([part.uvs for part in parts], 2), stacked([part.normals for part in parts], 3)
     return Part(first.material or first.name, np.vstack([part.vertices for part in parts]),
                 np.vstack([part.triangles.astype(np.int64) + start for part, start in zip(parts, starts)]), uvs, first.material,
-                first.keys, first.map)
+                first.keys, first.map, normals)
 
 
 def unlike(name: str, others: dict[str, Any], fallback: str) -> str:

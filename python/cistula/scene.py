@@ -250,15 +250,16 @@ class SceneBuilder:
     def __init__(self, scene: Mapping[str, object], *, folder: str | os.PathLike[str] = "") -> None:
         self._scene: dict[str, Any] = _plain(scene, "")
         self._folder = os.fspath(folder)
-        self._meshes: dict[int, tuple[Any, Any, Any]] = {}
+        self._meshes: dict[int, tuple[Any, Any, Any, Any]] = {}
         self._textures: dict[str, Any] = {}
 
     def mesh(self, name: str, vertices: npt.ArrayLike, triangles: npt.ArrayLike, uvs: npt.ArrayLike | None = None, *,
-             material: str, **keys: object) -> SceneBuilder:
+             material: str, normals: npt.ArrayLike | None = None, **keys: object) -> SceneBuilder:
         """Adds an object after those that there are, and returns the builder.
 
         vertices: N x 3 numbers in scene units; triangles: M x 3 whole numbers, indices of vertices; uvs: N x 2, v = 0 is the top
-        of a texture. keys: what meshes have in scene files, such as center, scale and rotate.
+        of a texture; normals: N x 3, outward, of any length: the mesh is smooth. keys: what meshes have in scene files, such as
+        center, scale, rotate and smooth.
         """
         corners = np.asarray(triangles)
         if corners.dtype.kind not in "iu" or corners.ndim != 2 or corners.shape[1] != 3:
@@ -272,8 +273,11 @@ class SceneBuilder:
             raise ArgumentError(f"uvs: must be {len(points)} x 2 numbers, one for each vertex, not {places.dtype} of shape {places.shape}")
         if places is not None:
             places = np.ascontiguousarray(places, dtype=np.float64)
+        ways = None if normals is None else _points("normals", normals)
+        if ways is not None and len(ways) != len(points):
+            raise ArgumentError(f"normals: must be {len(points)} x 3 numbers, one for each vertex, not {len(ways)}")
         objects = self._scene.setdefault("objects", [])
-        self._meshes[len(objects)] = (points, np.ascontiguousarray(corners, dtype=np.uint32), places)
+        self._meshes[len(objects)] = (points, np.ascontiguousarray(corners, dtype=np.uint32), places, ways)
         objects.append({"name": name, "mesh": "array.ply", "material": material, **_plain(keys, f"/objects/{len(objects)}")})
         return self
 

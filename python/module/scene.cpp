@@ -120,7 +120,8 @@ void set_texels(SceneDescription& description, const std::string& name, const Gi
 }
 
 void set_mesh(SceneDescription& description, size_t object, const Given<double, -1, 3>& vertices,
-              const Given<uint32_t, -1, 3>& triangles, const std::optional<Given<double, -1, 2>>& uvs) {
+              const Given<uint32_t, -1, 3>& triangles, const std::optional<Given<double, -1, 2>>& uvs,
+              const std::optional<Given<double, -1, 3>>& normals) {
     auto data = std::make_shared<MeshData>();
     PolygonMesh& mesh = data->groups.emplace_back();
     const auto* const points = reinterpret_cast<const glm::dvec3*>(vertices.data());
@@ -129,6 +130,10 @@ void set_mesh(SceneDescription& description, size_t object, const Given<double, 
     if (uvs) {
         const auto* const first = reinterpret_cast<const glm::dvec2*>(uvs->data());
         mesh.uvs.assign(first, first + uvs->shape(0));
+    }
+    if (normals) {
+        const auto* const first = reinterpret_cast<const glm::dvec3*>(normals->data());
+        mesh.normals.assign(first, first + normals->shape(0));
     }
     auto& shape = std::get<MeshObject>(description.objects.at(object).shape);
     shape.data = std::move(data);
@@ -177,8 +182,9 @@ nb::dict keys_of(const MaterialDescription& material) {
     return keys;
 }
 
-/// The parts of a mesh file, each with name, vertices, triangles, uvs (v = 0 is the top), keys of its material, map and
-/// the material's name, None where there is none; the warnings; the files that were read or looked for.
+/// The parts of a mesh file, each with name, vertices, triangles, uvs (v = 0 is the top), normals, keys of its
+/// material, map and the material's name, None where there is none; the warnings; the files that were read or looked
+/// for.
 nb::tuple read_mesh_parts(const std::string& path) {
     MeshData data;
     std::vector<MeshPart> parts;
@@ -192,9 +198,11 @@ nb::tuple read_mesh_parts(const std::string& path) {
         MeshSource& mesh = part.mesh;
         const nb::object uvs =
             mesh.uvs.empty() ? nb::none() : nb::cast(owned_rows<double, 2>(std::move(mesh.owned_uvs)));
+        const nb::object normals =
+            mesh.normals.empty() ? nb::none() : nb::cast(owned_rows<double, 3>(std::move(mesh.owned_normals)));
         const nb::object material = part.material ? nb::object(keys_of(*part.material)) : nb::none();
         all.append(nb::make_tuple(part.name, owned_rows<double, 3>(std::move(mesh.owned_vertices)),
-                                  owned_rows<uint32_t, 3>(std::move(mesh.owned_triangles)), uvs, material,
+                                  owned_rows<uint32_t, 3>(std::move(mesh.owned_triangles)), uvs, normals, material,
                                   part.material ? part.material->map : "", part.material ? part.material->name : ""));
     }
     return nb::make_tuple(all, data.warnings, data.files);
@@ -234,7 +242,7 @@ void bind_descriptions(nb::module_& m) {
         .def("set_texels", set_texels<uint8_t>, "name"_a, "array"_a.noconvert())
         .def("set_texels", set_texels<uint16_t>, "name"_a, "array"_a.noconvert())
         .def("set_texels", set_texels<float>, "name"_a, "array"_a.noconvert())
-        .def("set_mesh", set_mesh, "object"_a, "vertices"_a, "triangles"_a, "uvs"_a.none());
+        .def("set_mesh", set_mesh, "object"_a, "vertices"_a, "triangles"_a, "uvs"_a.none(), "normals"_a.none());
 }
 
 void bind_hits(nb::module_& m) {

@@ -55,14 +55,19 @@ class SceneDump {
         const EdgeLights& e = s.edge_lights;
         line(" edge lights", e.count, e.color, e.glow, e.radius, e.visible, e.falloff);
     }
+    void write(const DiskObject& d) { line(" disk", d.center, d.normal, d.radius); }
     void write(const SphereObject& s) { line(" sphere", s.center, s.radius, s.rotation); }
     void write(const TrianglesObject& t) {
         for (const auto& vertex : t.vertices) line(" vertex", vertex);
         for (const auto& triangle : t.triangles) line(" triangle", triangle[0], triangle[1], triangle[2]);
         for (const auto& uv : t.uvs) line(" uv", uv);
+        for (const auto& normal : t.normals) line(" normal", normal);
         line(" keep triangles", t.keep_triangles);
+        line(" smooth", t.smooth);
     }
-    void write(const MeshObject& m) { line(" mesh", m.file, m.center, m.scale, m.rotation, m.keep_triangles); }
+    void write(const MeshObject& m) {
+        line(" mesh", m.file, m.center, m.scale, m.rotation, m.keep_triangles, m.smooth);
+    }
 
     void write(const SceneDescription& s) {
         line("film", s.film.width, s.film.height, s.film.frames, s.film.supersample);

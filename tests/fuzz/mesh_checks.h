@@ -13,6 +13,7 @@ namespace cistula::fuzz {
 inline void check_meshes(std::vector<PolygonMesh> meshes) {
     for (const PolygonMesh& mesh : meshes) {
         require(mesh.uvs.empty() || mesh.uvs.size() == mesh.vertices.size());
+        require(mesh.normals.empty() || mesh.normals.size() == mesh.vertices.size());
         require(mesh.corner_uvs.size() <= mesh.corners.size());
         for (const uint32_t corner : mesh.corners) require(corner < mesh.vertices.size());
         size_t end = 0;

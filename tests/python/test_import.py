@@ -98,6 +98,15 @@ def test_an_obj_renders_as_it_does_itself(tmp_path: Path) -> None:
     assert np.array_equal(pictures[0].rgb(), pictures[1].rgb())
 
 
+def test_normals_of_an_obj(tmp_path: Path) -> None:
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    lines = ["v " + " ".join(map(str, v)) for v in ball.vertices] + ["vn " + " ".join(map(str, v)) for v in ball.vertices]
+    lines += ["f " + " ".join(f"{i + 1}//{i + 1}" for i in f) for f in ball.faces]
+    (tmp_path / "ball.obj").write_text("\n".join(lines))
+    scene = cistula.Scene.load(brought(tmp_path, "ball.obj"))
+    assert "smooth" in scene.effects() and not scene.warnings
+
+
 def test_materials_and_textures_of_an_obj(tmp_path: Path) -> None:
     Image.fromarray(np.array([[[255, 255, 255], [0, 0, 0]]], np.uint8)).save(tmp_path / "tiles.png")
     (tmp_path / "cubes.mtl").write_text(MTL)

@@ -41,6 +41,20 @@ def test_arrays_give_what_files_of_the_same_numbers_give(tmp_path: Path) -> None
     assert built.render().hash == cistula.Scene.from_dict(file, folder=tmp_path).render().hash
 
 
+def test_meshes_with_normals_are_smooth() -> None:
+    def with_keys(**keys: Any) -> cistula.Scene:
+        return cistula.SceneBuilder(SCENE).mesh("t", CORNERS, FACES, material="clay", **keys).build()
+
+    flat, smooth = with_keys(), with_keys(normals=CORNERS)
+    assert "smooth" in smooth.effects() and "smooth" not in flat.effects()
+    assert with_keys(normals=CORNERS, smooth=False).hash == flat.hash
+    assert "smooth" in with_keys(smooth=150).effects()
+    with pytest.raises(cistula.ArgumentError, match="normals: must be 4 x 3 numbers, one for each vertex, not 3"):
+        with_keys(normals=CORNERS[:3])
+    with pytest.raises(cistula.SceneError, match="at 12 of 12 corners"):
+        with_keys(normals=-CORNERS)
+
+
 def test_textures_are_arrays() -> None:
     def with_texture(array: Any, **keys: object) -> np.ndarray[Any, Any]:
         scene = {**SCENE, "materials": {"floor": {"texture": "t"}}, "objects": [], "ambient": 1, "camera": {"position": [0, 0, 3],

@@ -118,7 +118,7 @@ TEST(ObjFile, EncodingsLineEndsIndentationAndContinuation) {
 TEST(ObjFile, IndicesCountForwardAndBackward) {
     EXPECT_EQ(corner_positions(read_quietly(square + "f -4 -3 -2 -1\nv 9 9 9\n")), whole_square);
     EXPECT_EQ(corner_positions(read_quietly("f 1 2 3 4\n" + square)), whole_square) << "faces may come first";
-    EXPECT_EQ(corner_positions(read_quietly(square + "f 1//1 2//-1 3//1 4//1\n")), whole_square);
+    EXPECT_EQ(corner_positions(read_quietly(square + "vn 0 0 1\nf 1//1 2//-1 3//1 4//1\n")), whole_square);
     expect_obj_refused(square + "f 1 2 5\n", "a.obj:5: a face names vertex 5, but there are 4");
     expect_obj_refused(square + "f 1 2 99999999999\n", "a.obj:5: a face names vertex 99999999999, but there are 4");
     expect_obj_refused(square + "f 1 2 4294967297\n", "a.obj:5: a face names vertex 4294967297, but there are 4");
@@ -127,12 +127,14 @@ TEST(ObjFile, IndicesCountForwardAndBackward) {
                        "a.obj:5: expected the number of a vertex, from 1 or from -1 backward, found '0'");
     expect_obj_refused(square + "f 1 2 3.0\n", "a.obj:5: expected the number of a vertex");
     expect_obj_refused(square + "f 1/1 2/1 3/1\n", "a.obj:5: a face names texture coordinate 1, but there are 0");
-    expect_obj_refused(square + "f 1//x 2 3\n", "a.obj:5: expected the number of a normal, found 'x'");
+    expect_obj_refused(square + "f 1//x 2 3\n",
+                       "a.obj:5: expected the number of a normal, from 1 or from -1 backward, found 'x'");
+    expect_obj_refused(square + "f 1//1 2//1 3//1\n", "a.obj:5: a face names normal 1, but there are 0");
     expect_obj_refused(square + "f 1 2\n", "a.obj:5: a face needs at least 3 corners, found 2");
 }
 
 TEST(ObjFile, TextureCoordinatesBelongToCorners) {
-    const auto meshes = read_quietly(square + "vt 0.5\nvt 1 0.25\nvt 0 1 0\nf 1/1 2/2/7 3/-1\nf 1 3 4\n");
+    const auto meshes = read_quietly(square + "vt 0.5\nvt 1 0.25\nvt 0 1 0\nvn 0 0 1\nf 1/1 2/2/1 3/-1\nf 1 3 4\n");
     EXPECT_EQ(meshes.at(0).uvs, (std::vector<dvec2>{{0.5, 0}, {1, 0.25}, {0, 1}, {0, 0}, {0, 0}, {0, 0}}));
     EXPECT_TRUE(read_quietly(square + "vt 0 0\nf 1 2 3\n").at(0).uvs.empty());
     expect_obj_refused("vt nan 0\n", "a.obj:1: a texture coordinate is not finite");
@@ -153,10 +155,21 @@ TEST(ObjFile, ObjectsGroupsAndMaterialsBeginParts) {
     EXPECT_EQ(folder.warnings, std::vector<std::string>());
 }
 
-TEST(ObjFile, NormalsAndSmoothingAreIgnoredWithOneWarning) {
+TEST(ObjFile, NormalsBelongToCorners) {
+    const auto meshes =
+        read_quietly(square + "vn 0 0 1\nvn 0 nan 2\nvt 0 0\ns 1\nf 1//1 2/1/-1 3//2\nf 1/1/1 2 4\no flat\nf 1 2 3\n");
+    const std::vector<dvec3>& normals = meshes.at(0).normals;
+    ASSERT_EQ(normals.size(), 6u);
+    for (const size_t corner : {0, 3}) EXPECT_EQ(normals[corner], dvec3(0, 0, 1));
+    for (const size_t corner : {1, 2}) EXPECT_EQ(normals[corner].z, 2);
+    for (const size_t corner : {4, 5}) EXPECT_EQ(normals[corner], dvec3(0)) << "the face has none there";
+    EXPECT_TRUE(meshes.at(1).normals.empty());
+}
+
+TEST(ObjFile, SmoothingGroupsAreNamedWhereThereAreNoNormals) {
     ObjFolder folder;
-    folder.read(square + "vn 0 0 1\nvn 0 0.1 1\ns 1\nf 1//1 2//1 3//2\ns off\nf 1//1 2//1 4//2\ns 2\nvn 0 1 0\n");
-    EXPECT_EQ(folder.warnings, (std::vector<std::string>{"a.obj: ignored what has no meaning here: 'vn', 's'"}));
+    folder.read(square + "vn 0 0 1\ns 1\nf 1 2 3\ns off\nf 1 2 4\ns 2\n");
+    EXPECT_EQ(folder.warnings, (std::vector<std::string>{"a.obj: ignored what has no meaning here: 's'"}));
     read_quietly(square + "s off\nf 1 2 3\ns 0\nf 1 2 4\n");
 }
 

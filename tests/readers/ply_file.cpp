@@ -170,14 +170,22 @@ TEST(PlyFile, TextureCoordinatesOfVerticesAndOfCorners) {
     expect_ply_refused(replaced(text, "3 0 1 2", "3 0 1 2 4 0 0 1 0"), "a.ply:14: 4 values of texcoord for 3 corners");
 }
 
-TEST(PlyFile, NormalsOfVerticesAreIgnoredWithAWarning) {
+TEST(PlyFile, NormalsOfVertices) {
     std::vector<std::string> warnings;
     const std::string normals = "property float nx\nproperty float ny\nproperty float nz\n";
     std::string text = replaced(triangle, xyz, xyz + normals);
     for (const char* vertex : {"\n0 0 0", "\n2 0 0", "\n0 2 0"})
         text = replaced(text, vertex, vertex + std::string(" 0 0 1"));
-    expect_triangle(read_ply(text, "a.ply", warnings));
-    EXPECT_EQ(warnings, (std::vector<std::string>{"a.ply: ignored what has no meaning here: 'nx', 'ny', 'nz'"}));
+    text = replaced(text, "0 2 0 0 0 1", "0 2 0 0 nan 3");
+    const PolygonMesh mesh = read_ply(text, "a.ply", warnings);
+    expect_triangle(mesh);
+    ASSERT_EQ(mesh.normals.size(), 3u);
+    EXPECT_EQ(mesh.normals[1], glm::dvec3(0, 0, 1));
+    EXPECT_EQ(mesh.normals[2].z, 3);
+    EXPECT_TRUE(warnings.empty());
+    text = replaced(text, "property float ny\n", "property float my\n");
+    EXPECT_TRUE(read_ply(text, "a.ply", warnings).normals.empty());
+    EXPECT_EQ(warnings, (std::vector<std::string>{"a.ply: ignored what has no meaning here: 'nx', 'nz'"}));
 }
 
 TEST(PlyFile, ReadingIsStopped) {

@@ -317,12 +317,13 @@ CISTULA_INLINE void correct_starts(const LaneScene<T>& scene, const Ray<Lanes<T,
             leave_bodies(scene, number, up, same, around);
         });
         MaskOf<Real> single = false;  // lanes that are done by themselves
+        const Real factor = scene.disks.empty() ? Real(1) : far_factor(scene.extent, met);
         for_each_value(active, solids, [&](uint32_t index, const auto& same) {
             const Solid& solid = scene.solids[index];
             for (uint32_t i = 0; i < solid.near_count; ++i) {
                 const uint32_t number = scene.near_planes[solid.first_near + i];
                 const SharedPlane<T>& plane = scene.shared_planes[number];
-                const Real near(near_start<T> * plane.slack);
+                const Real near = Real(near_start<T>) * factor * Real(plane.slack);
                 const auto far =
                     (magnitude(distance_from(plane, start)) > near) & (magnitude(distance_from(plane, met)) > near);
                 single |= same & (own != Index(ScalarOf<Index>(number))) & !far;
@@ -340,5 +341,37 @@ CISTULA_INLINE void correct_starts(const LaneScene<T>& scene, const Ray<Lanes<T,
         media.take_where(active, around);
     }
 }
+
+/// What lies between is asked lane by lane.
+template <class T, int n>
+struct SmoothStart<Lanes<T, n>> {
+    using Real = Lanes<T, n>;
+    Vec3<Real> place;
+    MaskOf<Real> lifted = false;
+
+    template <class Intersector>
+    CISTULA_NOINLINE static SmoothStart of(const LaneScene<T>& scene, const Intersector&, const Hit<Real>& hit,
+                                           const Surface<Real>& s, const Vec3<Real>& from,
+                                           const LaneMedia<Real>& around, const MaskOf<Real>& active) {
+        Vec3<Real> way(Real(0));
+        MaskOf<Real> asked = false;
+        for_each_value(active & s.smooth, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+            Vec3<T> corner[3];
+            triangle_corners(scene, slot, corner);
+            assign_where(same, way, bulge(corner, corner_normals(scene, slot), hit, s.point));
+            if (scene.solids[scene.clusters[slot / cluster_lanes].solid].slab_count != 0) asked |= same;
+        });
+        const Real size = length(way);
+        SmoothStart start{from, size > Real(least_lift<T> * scene.extent)};
+        for_each_lane(start.lifted & asked, [&](int lane) {
+            const uint64_t key = KeyFormat<Real>::of_lane(hit.key, lane);
+            if (SmoothStart<T>::is_crossed(SingleIntersector<T>{scene}, key, lane_of(from, lane), lane_of(way, lane),
+                                           size[lane], around.of(lane).list()))
+                start.lifted = start.lifted & !MaskOf<Real>::of_bits(1u << lane);
+        });
+        assign_where(start.lifted, start.place, from + way);
+        return start;
+    }
+};
 
 }  // namespace cistula

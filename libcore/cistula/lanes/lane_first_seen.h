@@ -29,6 +29,7 @@ struct LaneFirstSeen {
             one.key = make_key(CrossingKind::enter, number, 0);
             Surface<T> met;
             met.normal = lane_of(s.normal, lane);
+            met.shading = lane_of(s.shading, lane);
             seen(lane).surface(one, met);
             if constexpr (layers) {
                 const auto material = uint32_t(s.material.number[lane]);

@@ -27,6 +27,7 @@ struct LaneIntersector {
         best.t = select(traced, Real(RealTraits<Real>::infinity), Real(-1));
         Mask enclosed = false;  // by solids that nothing else comes near
         if constexpr (E::solids && E::has(effect_insides)) enclosed = traced & (ray.media.among(scene.isolated) != 0);
+        closest_disk<E>(scene, traced & !enclosed, ray, best);
         const Index beside = beside_start<E>(ray);
         if constexpr (E::has(effect_spheres))
             if (scene.columns.count > 0) closest_balls(scene.columns, ray, traced, traced & !enclosed, best);
@@ -45,6 +46,7 @@ struct LaneIntersector {
         assign_where(!(active & is_finite(shadow.ray)), sum.opaque, Index(7));
         if constexpr (E::has(effect_absorption))
             if (scene.meshes.any) shadow_start(scene, shadow, active, sum);
+        shadow_disks<E>(scene, shadow, !sum.is_blocked(), sum);
         const Index beside = beside_start<E>(shadow.ray);
         if (scene.loops)
             shadow_in_loop(shadow, beside, sum);

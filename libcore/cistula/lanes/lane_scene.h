@@ -26,9 +26,10 @@ struct PlaneBodies {
 };
 
 /// What a solid is, in tables.
-enum SolidForm : int { form_triangles, form_slabs, form_ball };
+enum SolidForm : int { form_triangles, form_slabs, form_ball, form_disk };
 CISTULA_INLINE int form_of(const Solid& solid) {
-    return solid.kind != SolidKind::convex ? form_triangles : is_ball(solid) ? form_ball : form_slabs;
+    if (solid.kind != SolidKind::convex) return is_disk(solid) ? form_disk : form_triangles;
+    return is_ball(solid) ? form_ball : form_slabs;
 }
 
 /// What shading reads of a solid.

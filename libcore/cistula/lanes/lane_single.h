@@ -53,6 +53,7 @@ struct SingleFirstSeen {
         Surface<Real> surfaces;
         surfaces.point = spread<Real>(s.point);
         surfaces.normal = spread<Real>(s.normal);
+        surfaces.shading = spread<Real>(s.shading);
         surfaces.viewer_side = spread<Real>(s.viewer_side);
         surfaces.color = spread<Real>(s.color);
         surfaces.material.all = scene.materials.data;

@@ -46,6 +46,8 @@ template <class T, int n>
 struct Surface<Lanes<T, n>> {
     using Real = Lanes<T, n>;
     Vec3<Real> point, normal, viewer_side, color;
+    Vec3<Real> shading, mirrored;
+    MaskOf<Real> smooth = false;
     LaneMedia<Real> viewer_media;  // around viewer_side
     LaneMaterial<Real> material;
 };
@@ -136,18 +138,19 @@ CISTULA_INLINE Vec3<Lanes<T, n>> off_triangle(const Scene& scene, uint32_t slot,
     return select(outside, start(apex[1]), start(apex[0]));
 }
 
-/// texture_uv(), where `active` holds; else 0. `balls`: where balls are hit.
+/// texture_uv(), where `active` holds; else 0. `balls`, `disks`: where such are hit.
 template <class T, int n, class Scene>
 CISTULA_INLINE Vec2<Lanes<T, n>> texture_uv(const Scene& scene, const Hit<Lanes<T, n>>& hit,
                                             const Vec3<Lanes<T, n>>& normal, const MaskOf<Lanes<T, n>>& balls,
-                                            const MaskOf<Lanes<T, n>>& active) {
+                                            const MaskOf<Lanes<T, n>>& disks, const MaskOf<Lanes<T, n>>& active) {
     using Real = Lanes<T, n>;
-    Vec2<Real> uv(Real(0));
+    const MaskOf<Real> own = active & disks;
+    Vec2<Real> uv(select(own, hit.u, Real(0)), select(own, hit.v, Real(0)));
     for_each_lane(active & balls, [&](int lane) {
         const Vec2<T> one = texture_uv(scene, lane_of(hit, lane), lane_of(normal, lane));
         for (int k = 0; k < 2; ++k) uv[k].set(lane, one[k]);
     });
-    for_each_value(active & !balls, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+    for_each_value(active & !balls & !disks, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
         const auto& cluster = scene.clusters[slot / cluster_lanes];
         const Solid& solid = scene.solids[cluster.solid];
         const Vec2<T>* of =
@@ -245,8 +248,14 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
         assign_where(balls, s.point, along(center, radius, normal));
         assign_where(balls, s.viewer_side, s.point);
     }
+    MaskOf<Real> disks = false;
+    if constexpr (E::has(effect_planes)) disks = active & (form == Index(form_disk));
+    for_each_value(disks, first_slab, [&](uint32_t disk, const MaskOf<Real>& same) {
+        const Vec3<Real> normal = spread<Real>(scene.shared_planes[scene.disks[disk].plane].normal);
+        assign_where(same, s.normal, select(hit.enters, normal, -normal));
+    });
     if constexpr (E::triangles) {
-        for_each_value(active & !convex & !balls, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+        for_each_value(active & !convex & !balls & !disks, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
             Vec3<T> corner[3];
             triangle_corners(scene, slot, corner);
             const Vec3<Real> first = spread<Real>(corner[0]);
@@ -260,12 +269,24 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
                 assign_where(same, s.viewer_side, off_sheet(scene.extent, ray, hit.t, toward));
             else
                 assign_where(same, s.viewer_side, off_triangle(scene, slot, hit.enters, point));
+            if constexpr (E::has(effect_smooth))
+                if (const Vec3<T>* normals = corner_normals(scene, slot)) {
+                    assign_where(same, s.shading, normal_between(normals, hit));
+                    s.smooth |= same;
+                }
         });
+    }
+    if (E::has(effect_smooth) && any(s.smooth)) {
+        Vec3<Real> shading = normalized(s.shading);
+        bend_normal(ray.direction, s.normal, shading, s.mirrored);
+        s.shading = select(s.smooth, shading, s.normal);
+    } else {
+        s.shading = s.normal;
     }
     if constexpr (E::has(effect_texture)) {
         const MaskOf<Real> textured = active & !convex & (s.material.texture >= Index(0));
         for_each_value(textured, s.material.texture, [&](uint32_t texture, const MaskOf<Real>& same) {
-            const Vec2<Real> uv = texture_uv(scene, hit, s.normal, balls, same);
+            const Vec2<Real> uv = texture_uv(scene, hit, s.normal, balls, disks, same);
             assign_where(same, s.color, s.color * texture_at(scene, scene.textures[texture], uv));
         });
     }

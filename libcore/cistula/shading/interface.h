@@ -4,7 +4,7 @@
 #include "cistula/geometry/ray.h"
 #include "cistula/model/effects.h"
 #include "cistula/model/scene_view.h"
-#include "cistula/shading/snell.h"
+#include "cistula/shading/smooth.h"
 
 namespace cistula {
 
@@ -14,6 +14,7 @@ struct InterfaceSplit {
     Filter filter;       // share of the transmitted ray
     MaskOf<Real> bends;  // whether the transmitted ray takes the direction `through`; else it goes straight on
     Vec3<Real> through;
+    MaskOf<Real> total = false;  // whether all that would bend is reflected
 };
 
 /// Index of refraction at a point: that of the transparent solid of highest priority that contains it, or 1. (In lanes:
@@ -33,12 +34,14 @@ CISTULA_INLINE void take_opaque_index(const Scene&, const Material<Real>& m, boo
 
 /// Splits light at an interface. Total internal reflection moves the transmitted share to the reflected ray. With
 /// `fresnel`, kr + kt is split by the exact dielectric terms; nothing is reflected between equal indices. A sheet has
-/// no medium behind it, so it does not bend rays and uses kr and kt unchanged.
+/// no medium behind it, so it does not bend rays and uses kr and kt unchanged. `face`: the geometric normal, where
+/// `normal` is that of a smooth mesh: what would stay on the viewer's side of the face is reflected, too.
 template <class Real, class E, class Surfacing, class Media, class Scene>
 CISTULA_INLINE InterfaceSplit<Real, Throughput<Real, E>> split_at(const Scene& scene, const Surfacing& m,
                                                                   const Vec3<Real>& direction, const Vec3<Real>& normal,
                                                                   const Media& before, const Media& beyond,
-                                                                  const MaskOf<Real>& sheet) {
+                                                                  const MaskOf<Real>& sheet, const Vec3<Real>& face,
+                                                                  [[maybe_unused]] const MaskOf<Real>& smooth) {
     using Filter = Throughput<Real, E>;
     InterfaceSplit<Real, Filter> split{m.reflection, throughput_as<Filter>(m.filter), false, direction};
     if constexpr (E::has(effect_refraction)) {
@@ -57,10 +60,14 @@ CISTULA_INLINE InterfaceSplit<Real, Throughput<Real, E>> split_at(const Scene& s
         if (any(split.bends)) {
             const Refraction<Real> refraction = refracted<Real>(direction, normal, from, to);
             assign_where(split.bends, split.through, refraction.direction);
-            const MaskOf<Real> total = split.bends & refraction.total;
-            const MaskOf<Real> part = split.bends & (!refraction.total) & fresnel;
-            assign_where(total, split.reflection, both);
-            assign_where(total, split.filter, Filter(Real(0)));
+            MaskOf<Real> stays = refraction.total;
+            if constexpr (meets_smooth<E, Media>)
+                if (any(smooth & !stays))
+                    stays = stays | (smooth & !(dot(refraction.direction, face) <= Real(-least_lift<ScalarOf<Real>>)));
+            split.total = split.bends & stays;
+            const MaskOf<Real> part = split.bends & (!stays) & fresnel;
+            assign_where(split.total, split.reflection, both);
+            assign_where(split.total, split.filter, Filter(Real(0)));
             assign_where(part, split.reflection, both * refraction.reflectance);
             assign_where(part, split.filter,
                          throughput_as<Filter>(m.tint) * (both * (Real(1) - refraction.reflectance)));

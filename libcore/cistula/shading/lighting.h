@@ -34,12 +34,13 @@ struct LightAim {
     Real distance;
     Real cosine;
 
-    CISTULA_INLINE static LightAim of(const Light<ScalarOf<Real>>& light, const Surface<Real>& s) {
+    CISTULA_INLINE static LightAim of(const Light<ScalarOf<Real>>& light, const Vec3<Real>& from,
+                                      const Vec3<Real>& normal) {
         LightAim aim;
-        aim.direction = spread<Real>(light.position) - s.viewer_side;
+        aim.direction = spread<Real>(light.position) - from;
         aim.distance = length(aim.direction);
         aim.direction *= reciprocal(aim.distance);
-        aim.cosine = dot(s.normal, aim.direction);
+        aim.cosine = dot(normal, aim.direction);
         return aim;
     }
 };
@@ -47,8 +48,9 @@ struct LightAim {
 /// Whether a light lies in front of a face. A light within the incidence distance of the face's plane does not light
 /// it, so that rounding does not decide its side.
 template <class Real, class Scene>
-CISTULA_INLINE MaskOf<Real> is_before(const Scene& scene, const Light<ScalarOf<Real>>& light, const Surface<Real>& s) {
-    return dot(s.normal, spread<Real>(light.position) - s.viewer_side) > incidence<ScalarOf<Real>> * scene.extent;
+CISTULA_INLINE MaskOf<Real> is_before(const Scene& scene, const Light<ScalarOf<Real>>& light, const Vec3<Real>& from,
+                                      const Vec3<Real>& normal) {
+    return dot(normal, spread<Real>(light.position) - from) > incidence<ScalarOf<Real>> * scene.extent;
 }
 
 /// Whether a light adds nothing, even where it is not shadowed.
@@ -109,31 +111,48 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
     [[maybe_unused]] BallStart from_ball;
     if constexpr (meets_balls<E, Media> && !in_lanes<Real>)
         from_ball = ball_start(scene, ray, event.hit, s.viewer_side);
+    const Vec3<Real>* from = &s.viewer_side;
+    [[maybe_unused]] SmoothStart<Real> off_face;
+    if constexpr (meets_smooth<E, Media>)
+        if (any(s.smooth)) {
+            off_face = SmoothStart<Real>::of(scene, intersector, event.hit, s, *from, *around, active);
+            from = &off_face.place;
+        }
     const auto& m = material_of(scene, s);
     sums.add(weight * (s.color * m.ambient), LightSource::ambient, active);
     if constexpr (E::has(effect_diffuse | effect_specular)) {
         for (uint32_t i = 0; i < scene.lights.size; ++i) {
             const Light<ScalarOf<Real>>& light = scene.lights[i];
-            MaskOf<Real> lights = active & is_before(scene, light, s);
+            MaskOf<Real> lights = active & is_before(scene, light, *from, s.shading);
             if (!any(lights)) {
                 observer.behind(i, light);
                 continue;
             }
-            const LightAim<Real> aim = LightAim<Real>::of(light, s);
+            const LightAim<Real> aim = LightAim<Real>::of(light, *from, s.shading);
             lights = lights & (aim.cosine > Real(0));
+            [[maybe_unused]] MaskOf<Real> through_face = false;  // the way to the light may cross the own face
+            if constexpr (meets_smooth<E, Media>) {
+                through_face = s.smooth & !(dot(s.normal, aim.direction) > Real(0));
+                lights = lights & (off_face.lifted | !through_face);
+            }
             if (!any(lights)) {
                 observer.behind(i, light);
                 continue;
             }
             const Vec3<Real> lit =
-                phong<Real, E>(m, s.color, light, s.normal, aim.direction, -ray.direction, aim.cosine, aim.distance);
+                phong<Real, E>(m, s.color, light, s.shading, aim.direction, -ray.direction, aim.cosine, aim.distance);
             observer.unshadowed(i, aim, lit);
             lights = lights & !is_nothing(lit);
             if (!any(lights)) continue;
             Throughput<Real, E> arrives(Real(1));
-            ShadowRay<Real, Media> shadow{spawned(s.viewer_side, aim.direction, event.hit, *around), aim.distance,
-                                          &light};
+            ShadowRay<Real, Media> shadow{spawned(*from, aim.direction, event.hit, *around), aim.distance, &light};
+            if constexpr (meets_smooth<E, Media>)
+                assign_where(through_face, shadow.ray.from_solid, IndexOf<Real>(int(no_solid)));
             find_start_plane<E>(scene, shadow.ray);
+            if constexpr (meets_disks<E, Media>)
+                if (const MaskOf<Real> moved = start_near<E>(scene, shadow.ray) > Real(0); any(moved))
+                    assign_where(moved, shadow.distance,
+                                 dot(spread<Real>(light.position) - shadow.ray.origin, shadow.ray.direction));
             if constexpr (meets_contacts<E, Media> && !in_lanes<Real>)
                 if (meshes) count_meshes(scene, intersector, shadow.ray);
             if constexpr (meets_balls<E, Media> && !in_lanes<Real>) from_ball.begin(scene, intersector, shadow.ray);

@@ -157,6 +157,7 @@ class RayTree {
                     }
             }
             find_start_plane<E>(scene_, branch.ray);
+            start_near<E>(scene_, branch.ray);
             // All that comes from one of the first surface's children is followed before the other.
             if constexpr (E::has(fills_layers))
                 if (branch.depth == 1) sums_.enter(branch.mirrored);
@@ -185,8 +186,9 @@ class RayTree {
     CISTULA_INLINE void send_on(const Entry& branch, const MaskOf<Real>& active, const SurfaceEvent<Real, Media>& event,
                                 const Surface<Real>& s) {
         const MaskOf<Real> sheet = is_kind(event.hit.key, CrossingKind::sheet);
-        const InterfaceSplit<Real, Weight> split = split_at<Real, E>(
-            scene_, material_of(scene_, s), branch.ray.direction, s.normal, branch.ray.media, event.beyond, sheet);
+        const InterfaceSplit<Real, Weight> split =
+            split_at<Real, E>(scene_, material_of(scene_, s), branch.ray.direction, s.shading, branch.ray.media,
+                              event.beyond, sheet, s.normal, s.smooth);
         const Weight mirrored = branch.weight * split.reflection;
         const Weight through = branch.weight * split.filter;
         // Sums over channels, so that the lighter child has at most half the weight of its parent.
@@ -231,7 +233,7 @@ class RayTree {
     CISTULA_INLINE Entry mirrored_child(const Entry& parent, const SurfaceEvent<Real, Media>& event,
                                         const Surface<Real>& s, const Weight& weight) {
         Entry child = parent.child(weight, true);
-        child.ray = spawned(s.viewer_side, reflected(parent.ray.direction, s.normal), event.hit, s.viewer_media);
+        child.ray = spawned(s.viewer_side, mirrored_way<E, Media>(s, parent.ray.direction), event.hit, s.viewer_media);
         return child;
     }
     CISTULA_INLINE Entry transmitted_child(const Entry& parent, const SurfaceEvent<Real, Media>& event,
@@ -261,7 +263,8 @@ class RayTree {
         child.weight = weight;
         child.mirrored = !goes_through;
         if (!goes_through) {
-            spawn(child.ray, s.viewer_side, reflected(parent.ray.direction, s.normal), event.hit, parent.ray.media);
+            spawn(child.ray, s.viewer_side, mirrored_way<E, Media>(s, parent.ray.direction), event.hit,
+                  parent.ray.media);
             correct_start(child.ray, parent.ray, event, s, false);
         } else if (split.bends) {
             spawn(child.ray, far_side<E>(scene_, event.hit, s.point, s.normal), split.through, event.hit, event.beyond);

@@ -27,7 +27,8 @@ auto at_place(const SceneDescription& scene, const std::string& place, const Rea
 }
 
 /// Throws unless a list of triangles, three corners each, is one.
-void check_triangles(size_t vertices, std::span<const uint32_t> corners, std::span<const glm::dvec2> uvs) {
+void check_triangles(size_t vertices, std::span<const uint32_t> corners, std::span<const glm::dvec2> uvs,
+                     size_t normals) {
     const auto refuse = [](const std::string& problem, const char* remedy = "") {
         throw Error(ErrorKind::scene, problem, remedy);
     };
@@ -36,9 +37,13 @@ void check_triangles(size_t vertices, std::span<const uint32_t> corners, std::sp
         if (corner >= vertices)
             refuse("a triangle names vertex " + std::to_string(corner) + ", but there are only " +
                    std::to_string(vertices) + " (numbered from 0)");
-    if (!uvs.empty() && uvs.size() != vertices)
-        refuse("there are " + std::to_string(uvs.size()) + " uvs for " + std::to_string(vertices) + " vertices",
-               "give one a vertex, or none");
+    const auto check_count = [&](size_t count, const char* what) {
+        if (count != 0 && count != vertices)
+            refuse("there are " + std::to_string(count) + what + std::to_string(vertices) + " vertices",
+                   "give one a vertex, or none");
+    };
+    check_count(uvs.size(), " uvs for ");
+    check_count(normals, " normals for ");
     for (const glm::dvec2& uv : uvs)
         if (!is_finite(uv.x) || !is_finite(uv.y)) refuse("a uv is not finite");
 }
@@ -57,7 +62,8 @@ void check_mesh(const MeshData& mesh) {
         }
         if (group.ends.empty() ? group.corners.size() % 3 != 0 : end != group.corners.size())
             refuse("has corners beyond its last polygon");
-        if (!group.corners.empty()) check_triangles(group.vertices.size(), group.corners, group.uvs);
+        if (!group.corners.empty())
+            check_triangles(group.vertices.size(), group.corners, group.uvs, group.normals.size());
     }
 }
 
@@ -98,7 +104,7 @@ class AssetLoader {
         if (const auto* list = std::get_if<TrianglesObject>(&object.shape)) {
             std::span<const uint32_t> corners;
             if (!list->triangles.empty()) corners = {list->triangles.front().data(), 3 * list->triangles.size()};
-            check_triangles(list->vertices.size(), corners, list->uvs);
+            check_triangles(list->vertices.size(), corners, list->uvs, list->normals.size());
         }
         const auto* mesh = std::get_if<MeshObject>(&object.shape);
         if (!mesh) return nullptr;

@@ -26,9 +26,11 @@
 #include "scene/compile/lights/radiance_bound.h"
 #include "scene/compile/materials/compile_materials.h"
 #include "scene/compile/materials/required_effects.h"
+#include "scene/compile/meshes/corner_normals.h"
 #include "scene/compile/meshes/mesh_apex.h"
 #include "scene/compile/scene_hash.h"
 #include "scene/compile/solids/compile_balls.h"
+#include "scene/compile/solids/compile_disks.h"
 #include "scene/compile/solids/compile_solids.h"
 #include "scene/compile/solids/placed_bodies.h"
 #include "scene/description/rotation.h"
@@ -101,8 +103,9 @@ class Compiler {
         scene_.hulls.resize(source_.solids.size());
         places_.boxes.resize(source_.solids.size());
         places_.distances.resize(source_.solids.size());
+        places_.bulges.resize(source_.solids.size());
         flat_planes_.resize(source_.solids.size());
-        by_planes_.assign(source_.solids.size(), false);
+        primitives_.assign(source_.solids.size(), effect_triangles);
         if (description_.contact) hash_.add(*description_.contact);
         hash_.add(normalization_.center);
         hash_.add(static_cast<uint32_t>(normalization_.scale));
@@ -111,9 +114,11 @@ class Compiler {
         for (const SolidContacts& solid : bodies_.contacts.solids) scene_.reaches.push_back(solid.reach);
         compile_convex();
         compile_balls();
+        compile_disks();
         lights_ = normalize_lights(source_, normalization_, bodies_.convex);
         light_faces_.resize(lights_.size());
         find_convex_incidents(lights_, bodies_, incident_reach(), light_faces_);
+        find_disk_incidents(lights_, bodies_, scene_.solids, incident_reach(), light_faces_);
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
             scene_.solid_names.push_back(source_.solids[i].name);
             scene_.solids[i].material = source_.solids[i].material;
@@ -122,6 +127,7 @@ class Compiler {
         settle_on_faces();
         add_shared_planes(scene_, bodies_.contacts);
         list_shared_planes(scene_, bodies_, places_.boxes);
+        add_disks(scene_, source_, bodies_.disks, normalization_);
         find_near_balls(scene_, bodies_.balls, places_.boxes, flat_planes_);
         refuse_lights_on_balls();
         add_slabs();
@@ -130,6 +136,7 @@ class Compiler {
         add_hulls();
         find_touching_solids();
         find_isolated_solids();
+        find_crossed_bulges();
         explain();
         scene_.hashes = FrameHashes(hash_.hex());
         return std::make_unique<CompiledScene<Real>>(std::move(scene_));
@@ -153,7 +160,7 @@ class Compiler {
             bound_sphere(convex, solid);
             scene_.convex.push_back(convex.solid);
             places_.boxes[convex.solid] = convex.box;
-            by_planes_[convex.solid] = true;
+            primitives_[convex.solid] = effect_solids;
         }
     }
 
@@ -165,9 +172,38 @@ class Compiler {
             if (source_.materials[source_.solids[ball.solid].material].texture >= 0)
                 for (const dvec3& axis : ball.axes) hash_.add(axis);
             places_.boxes[ball.solid] = ball.box();
-            by_planes_[ball.solid] = true;
+            primitives_[ball.solid] = effect_spheres;
         }
         add_balls(scene_, bodies_.balls);
+    }
+
+    /// All of disks but what needs their planes in the scene's precision (add_disks).
+    void compile_disks() {
+        for (uint32_t i = 0; i < bodies_.disks.size(); ++i) {
+            const PlacedDisk& disk = bodies_.disks[i];
+            hash_.add(disk.solid);
+            hash_.add(disk.object->normal);
+            hash_.add(disk.equation.normal);
+            hash_.add(disk.equation.offset);
+            hash_.add(disk.is_endless() ? dvec3(0) : disk.center);
+            hash_.add(disk.radius);
+            Solid& solid = scene_.solids[disk.solid];
+            solid = {};
+            solid.kind = SolidKind::sheet;
+            solid.first_slab = i;
+            solid.slab_count = disk_slabs;
+            solid.first_triangle = triangle_count_;
+            triangle_count_ += triangles_of_disk;
+            primitives_[disk.solid] = effect_planes;
+            flat_planes_[disk.solid] = disk.equation;
+            places_.boxes[disk.solid] = disk.is_endless() ? bodies_.sizes[disk.solid].box : disk.box();
+            if (!disk.is_endless()) continue;
+            scene_.hulls[disk.solid].reach = INFINITY;
+            if (magnitude(disk.equation.offset) > horizon * normalization_.extent)
+                scene_.warnings.push_back(source_.solids[disk.solid].place +
+                                          ": the plane is not seen: it is more than 4,096 times as far away as the "
+                                          "scene is large");
+        }
     }
 
     /// Shadow rays know whether a light is inside a ball, so it must not be on one.
@@ -205,15 +241,17 @@ class Compiler {
         return dot(dvec3(shared.normal), pair.normal) > 0 ? shared.offset : -shared.offset;
     }
 
+    /// Whether two boxes are no farther apart than `reach` along any axis.
+    static bool near(const Box& a, const Box& b, double reach) {
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(a.low[axis] <= b.high[axis] + reach && b.low[axis] <= a.high[axis] + reach)) return false;
+        return true;
+    }
+
     /// Finds the solids with an inside that may share a face with another solid (surface_event.h).
     void find_touching_solids() {
         const auto may_share = [&](uint32_t i) {
             return scene_.solids[i].kind != SolidKind::sheet && !places_.boxes[i].empty();
-        };
-        const auto near = [&](const Box& a, const Box& b) {
-            for (int axis = 0; axis < 3; ++axis)
-                if (!(a.low[axis] <= b.high[axis] + touching && b.low[axis] <= a.high[axis] + touching)) return false;
-            return true;
         };
         const auto count = static_cast<uint32_t>(scene_.solids.size());
         std::vector<RTCBuildPrimitive> primitives;
@@ -224,9 +262,20 @@ class Compiler {
             const Box& own = places_.boxes[i];
             if (may_share(i))
                 scene_.solids[i].may_touch = any_in_box(tree, padded(own, touching), [&](uint32_t other) {
-                    return other != i && near(own, places_.boxes[other]);
+                    return other != i && near(own, places_.boxes[other], touching);
                 });
         });
+    }
+
+    /// Whether a disk comes near a convex solid in a box: lines in a ball that only touches it must know of it, too
+    /// (docs/rules.md, 14, line 14).
+    bool meets_disk(const SceneView<Real>& view, uint32_t index, const PaddedBox& box) const {
+        const dvec3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
+        const bool ball = is_ball(view.solids[index]);
+        const double reach =
+            touching + (ball ? double(view.balls[view.solids[index].first_slab].radius) : 0.5 * length(high - low));
+        return std::any_of(bodies_.disks.begin(), bodies_.disks.end(),
+                           [&](const PlacedDisk& disk) { return disk.distance(0.5 * (low + high)) <= reach; });
     }
 
     /// Finds solids inside of which nothing else is. An optimization, skipped for scenes with very many pairs.
@@ -237,7 +286,7 @@ class Compiler {
         std::vector<PaddedBox> boxes;
         for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(primitive_box(view, p));
         for (uint32_t a = 0; a < view.convex.size; ++a) {
-            bool isolated = true;
+            bool isolated = !meets_disk(view, view.convex[a], boxes[a]);
             for (uint32_t b = 0; b < primitives && isolated; ++b)
                 isolated = a == b || are_apart(boxes[a], boxes[b]) || is_outside_ball(view, a, b, boxes[b]);
             scene_.solids[view.convex[a]].isolated = isolated ? 1 : 0;
@@ -266,6 +315,19 @@ class Compiler {
                    radius + double(other->radius) - double(incidence<Real>) * double(view.extent);
         return distance_to_box(Box{{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}},
                                center) > radius;
+    }
+
+    /// Finds the smooth meshes of which anything else, or another part, may lie within a bulge.
+    void find_crossed_bulges() {
+        const auto count = static_cast<uint32_t>(scene_.solids.size());
+        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+            Solid& solid = scene_.solids[i];
+            if (!is_smooth(solid)) return;
+            bool is_crossed = source_.solids[i].in_parts;
+            for (uint32_t other = 0; other < count && !is_crossed; ++other)
+                is_crossed = other != i && near(places_.boxes[i], places_.boxes[other], places_.bulges[i] + touching);
+            solid.slab_count = is_crossed ? 1 : 0;
+        });
     }
 
     NormalizedMesh placed_mesh(uint32_t number) const {
@@ -326,7 +388,9 @@ class Compiler {
         for (uint32_t first = 0, end = 0; first < count; first = end) {
             for (size_t triangles = 0; end < count && end - first < most_at_once && triangles < most_triangles; ++end)
                 triangles += source_.solids[end].mesh.triangles.size();
-            const auto is_mesh = [&](uint32_t i) { return !source_.solids[i].polyhedron && !by_planes_[i]; };
+            const auto is_mesh = [&](uint32_t i) {
+                return !source_.solids[i].polyhedron && primitives_[i] == effect_triangles;
+            };
             prepared.resize(end - first);
             tbb::parallel_invoke(
                 [&] {
@@ -369,8 +433,31 @@ class Compiler {
                 if (outlined) scene_.hulls[number].points.push_back(mesh.vertex(corner));
                 if (textured) scene_.uvs.push_back(Vec2<Real>(from.mesh.uvs[corner]));
             }
+        if (!from.normals.empty()) add_normals(number, mesh);
         triangle_count_ += mesh.size();
         from.mesh = {};  // its triangles are now stored in the clusters
+    }
+
+    /// Adds the normals of a mesh's corners. Triangles on shared planes are flat, and so are slivers that rounding has
+    /// turned away from their normals.
+    void add_normals(uint32_t number, const NormalizedMesh& mesh) {
+        scene_.solids[number].first_slab = static_cast<uint32_t>(scene_.normals.size()) + 1;
+        for (uint32_t t = 0; t < mesh.size(); ++t) {
+            const std::array<dvec3, 3>& normals = source_.solids[number].normals[t];
+            const std::array<dvec3, 3> corners = mesh.triangle(t);
+            const dvec3 face = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
+            bool is_flat = bodies_.contacts.plane_of(number, t) != no_plane;
+            double bulge = 0;
+            for (size_t c = 0; c < 3; ++c) {
+                is_flat = is_flat || !(dot(normals[c], face) >= least_cosine / 2);
+                for (const dvec3& corner : corners)
+                    bulge = max_or_second(magnitude(dot(normals[c], corners[c] - corner)), bulge);
+            }
+            for (const dvec3& normal : normals)
+                scene_.normals.push_back(is_flat ? Vec3<Real>(Real(0)) : Vec3<Real>(normal));
+            if (!is_flat) places_.bulges[number] = max_or_second(bulge, places_.bulges[number]);
+        }
+        source_.solids[number].normals = {};
     }
 
     /// Whether all corners lie within `tolerance` of the plane of the largest triangle, which is then stored in the
@@ -409,9 +496,10 @@ class Compiler {
         find_triangle_incidents(lights_, NormalizedMesh(from.mesh, normalization_, contacts.points, false),
                                 prepared.groups, prepared.tree, number, triangle_count_, contacts.reach,
                                 incident_reach(), light_faces_);
+        const LightFaces none(lights_.size());  // light in the plane of a smooth face may fall on it
         places_.distances[number] =
-            light_distances(lights_, mesh, prepared.groups, prepared.tree, number, triangle_count_, light_faces_,
-                            normalization_.extent, 2 * incident_reach());
+            light_distances(lights_, mesh, prepared.groups, prepared.tree, number, triangle_count_,
+                            from.normals.empty() ? light_faces_ : none, normalization_.extent, 2 * incident_reach());
     }
 
     /// Moves lights onto the faces on which they lie; distances from where they were then say nothing.
@@ -431,6 +519,8 @@ class Compiler {
         }
         hash_.add_bytes(mesh.triangles.data(), mesh.triangles.size_bytes());
         if (source_.solids[number].keep_triangles) hash_.add(1u);
+        for (const auto& corners : source_.solids[number].normals)
+            for (const dvec3& normal : corners) hash_.add(normal);
         if (source_.materials[source_.solids[number].material].texture < 0) return;
         for (const auto& uv : mesh.uvs) hash_.add(uv.x), hash_.add(uv.y);
     }
@@ -442,6 +532,14 @@ class Compiler {
                 light_distances(lights_, convex, light_faces_, normalization_.extent, 2 * incident_reach());
         for (const PlacedBall& ball : bodies_.balls)
             places_.distances[ball.solid] = light_distances(lights_, ball, normalization_.extent, 2 * incident_reach());
+        for (const PlacedDisk& disk : bodies_.disks) {
+            if (disk.is_endless())  // lights are no farther from the box than from the plane
+                for (const NormalizedLight& light : lights_)
+                    places_.boxes[disk.solid].add(light.position -
+                                                  disk.equation.distance(light.position) * disk.equation.normal);
+            places_.distances[disk.solid] =
+                light_distances(lights_, disk, light_faces_, normalization_.extent, 2 * incident_reach());
+        }
         const dvec3 bound =
             radiance_bound(source_, textures, places_, 1 / normalization_.factor, lights_, scene_.warnings);
         scale_ = radiance_scale(description_, bound, sizeof(Real) == sizeof(float));
@@ -451,7 +549,7 @@ class Compiler {
         std::vector<double> sizes(source_.materials.size());  // of the largest solid of each
         for (size_t i = 0; i < places_.boxes.size(); ++i) {
             double& size = sizes[source_.solids[i].material];
-            if (!places_.boxes[i].empty())
+            if (!places_.boxes[i].empty() && !source_.solids[i].disk)
                 size = max_or_second(length(places_.boxes[i].high - places_.boxes[i].low), size);
         }
         for (size_t i = 0; i < source_.materials.size(); ++i) {
@@ -591,7 +689,7 @@ class Compiler {
         std::vector<MaterialUse> uses;
         for (size_t i = 0; i < source_.solids.size(); ++i)
             uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place,
-                            source_.solids[i].closed, by_planes_[i], source_.solids[i].sphere != nullptr});
+                            source_.solids[i].closed, primitives_[i], is_smooth(scene_.solids[i])});
         scene_.effect_reasons =
             explain_effects(description_, uses, light_on_face(source_, lights_, light_faces_), contact());
         scene_.effects = required_effects(scene_.effect_reasons);
@@ -603,6 +701,8 @@ class Compiler {
         if (contacts.planes.empty()) return "";
         const std::string &first = source_.solids[contacts.first[0]].place,
                           &second = source_.solids[contacts.first[1]].place;
+        if (source_.solids[contacts.first[0]].disk && first == second)
+            return first + " is a plane or a disk, whose plane all shares that touches it";
         std::string text = first == second ? "faces of " + first : "faces of " + first + " and " + second;
         text += " lie in one plane";
         if (contacts.pairs > 1)
@@ -630,7 +730,7 @@ class Compiler {
     std::vector<NormalizedLight> lights_;
     LightFaces light_faces_;
     SolidPlaces places_;
-    std::vector<bool> by_planes_;                            // each solid is given by planes, or a ball
+    std::vector<uint32_t> primitives_;                       // the effect of what each solid is made of
     std::vector<std::optional<PlaneEquation>> flat_planes_;  // of each flat sheet
     uint32_t triangle_count_ = 0;
     RadianceScale scale_;

@@ -9,7 +9,7 @@ namespace {
 /// Fills `to`; false if the scene does not fit.
 template <class Real>
 bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantScene<Real>& to) {
-    if (!here.shared_planes.empty() || !here.balls.empty()) return false;
+    if (!here.shared_planes.empty() || !here.balls.empty() || !here.normals.empty()) return false;
     for (const Solid& solid : here.solids)
         if (solid.kind == SolidKind::mesh || solid.may_touch) return false;
     if (!to.solids.assign(here.solids) || !to.slabs.assign(here.slabs) ||

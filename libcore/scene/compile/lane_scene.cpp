@@ -30,6 +30,7 @@ bool fits_lanes(const SceneView<Real>& scene) {
     for (const Solid& solid : scene.solids) {
         closed += solid.kind != SolidKind::sheet;
         if (2 * solid.slab_count > LaneKey::faces) return false;
+        if (is_disk(solid) && solid.first_triangle > LaneKey::faces) return false;
     }
     if (closed > LaneScene<Real>::most_closed) return false;
     // Rays that start at a contact of a mesh count the meshes around them, one after the other: most of those in glass.
@@ -74,6 +75,9 @@ void OwnedLaneScene<Real>::number_solids(const SceneView<Real>& from, uint32_t m
     for (Cluster<Real>& cluster : clusters_) cluster.solid = place[cluster.solid];
     incidents_.assign(from.incidents.begin(), from.incidents.end());
     for (Incident& incident : incidents_) incident.solid = place[incident.solid];
+    disks_.assign(from.disks.begin(), from.disks.end());
+    for (Disk<Real>& disk : disks_) disk.solid = place[disk.solid];
+    scene_.disks = span_of(disks_);
     plane_solids_.assign(from.plane_solids.begin(), from.plane_solids.end());
     for (uint32_t& solid : plane_solids_) solid = place[solid];
     scene_.numbers = span_of(numbers_);
@@ -218,7 +222,7 @@ size_t OwnedLaneScene<Real>::memory() const {
     const auto bytes = [](const auto&... arrays) { return (... + bytes_of(arrays)); };
     return sizeof *this + bytes(numbers_, places_, convex_, convex_places_, tree_items_, solids_, convex_copies_,
                                 shading_, indices_, clusters_, planes_, sides_, incidents_, tree_, plane_solids_,
-                                plane_bodies_);
+                                plane_bodies_, disks_);
 }
 
 template <class Real>

@@ -38,6 +38,7 @@ class OwnedLaneScene {
     std::vector<SolidShading> shading_;
     std::vector<SolidsOfIndex> indices_;
     std::vector<Cluster<Real>> clusters_;
+    std::vector<Disk<Real>> disks_;
     std::vector<SheetPlane<Real>> planes_;
     std::vector<TriangleSides<Real>> sides_;
     std::vector<Incident> incidents_;

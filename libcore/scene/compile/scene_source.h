@@ -20,6 +20,7 @@ struct SourceSolid {
     uint32_t material = 0;                    // index into SceneSource::materials
     const SolidObject* polyhedron = nullptr;  // null: the solid is `sphere` or, without one, `mesh`
     const SphereObject* sphere = nullptr;
+    const DiskObject* disk = nullptr;  // then `mesh` is a square in its plane (compile_disks.h)
     /// The triangles that are rendered, in file order; those of a closed mesh counter-clockwise seen from outside.
     MeshSource mesh;
     MeshEdges edges;              // of the mesh, if they were found when it was found to be closed; else none
@@ -28,6 +29,10 @@ struct SourceSolid {
     uint32_t body = 0;            // of several solids that one mesh makes, from 0; they share its name
     bool keep_triangles = false;  // the mesh is not given by planes, even where it could be
     size_t object = 0;            // whose it is, by number in the description
+    Smoothing smooth;             // of the mesh, as described
+    /// Unit normals at the corners of each of its triangles, outward, 0 where a triangle is flat; none: all are.
+    std::vector<std::array<glm::dvec3, 3>> normals;
+    bool in_parts = false;  // a mesh with normals whose triangles are not all joined by edges
 
     /// Whether it is given by triangles, of which planes may be made.
     bool is_mesh() const { return !polyhedron && !sphere; }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -91,13 +92,31 @@ struct SphereObject {
     glm::dvec3 rotation{0};  // degrees about x, then y, then z
 };
 
+/// How a mesh is shaded: without a value by the normals that it has, else by the means of those faces around a corner
+/// that meet at angles less than this, in degrees; 0: by its faces.
+using Smoothing = std::optional<double>;
+/// A sheet: a disk, or a plane without end.
+struct DiskObject {
+    glm::dvec3 center{0};  // of a plane: its point nearest to the origin
+    glm::dvec3 normal{0, 0, 1};
+    double radius = 1;  // infinite for a plane
+
+    bool is_endless() const { return radius > std::numeric_limits<double>::max(); }
+    /// The plane normal.x = offset.
+    static DiskObject plane(const glm::dvec3& normal, double offset) {
+        return {offset / dot(normal, normal) * normal, normal, std::numeric_limits<double>::infinity()};
+    }
+};
+
 /// A mesh given in the scene file. Closed meshes become solids with an inside, others are sheets seen from both sides.
 /// Convex solids with flat faces are given by planes, unless they keep their triangles.
 struct TrianglesObject {
     std::vector<glm::dvec3> vertices;
     std::vector<std::array<uint32_t, 3>> triangles;
-    std::vector<glm::dvec2> uvs;  // one per vertex, or none
+    std::vector<glm::dvec2> uvs;      // one per vertex, or none
+    std::vector<glm::dvec3> normals;  // one per vertex, or none; of any length
     bool keep_triangles = false;
+    Smoothing smooth;
 };
 
 /// A mesh that may have polygons, groups and materials of its own, and is placed.
@@ -108,12 +127,13 @@ struct MeshObject {
     double scale = 1;
     glm::dvec3 rotation{0};
     bool keep_triangles = false;
+    Smoothing smooth;
 };
 
 struct ObjectDescription {
     std::string name;
     int material = -1;  // -1 only for a mesh that brings its own
-    std::variant<SolidObject, SphereObject, TrianglesObject, MeshObject> shape;
+    std::variant<SolidObject, SphereObject, DiskObject, TrianglesObject, MeshObject> shape;
     std::string place;  // JSON pointer of the object in the file, for messages: "/objects/2"
 };
 

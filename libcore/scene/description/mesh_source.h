@@ -21,14 +21,16 @@ using TriangleCorners = std::array<uint32_t, 3>;
 struct MeshSource {
     std::span<const glm::dvec3> vertices;
     std::span<const TriangleCorners> triangles;
-    std::span<const glm::dvec2> uvs;  // one per vertex, or none
-    uint32_t doubled_polygons = 0;    // of the file, left out since an earlier one has the same corners
+    std::span<const glm::dvec2> uvs;      // one per vertex, or none
+    std::span<const glm::dvec3> normals;  // one per vertex, or none; of any length
+    uint32_t doubled_polygons = 0;        // of the file, left out since an earlier one has the same corners
 
     CoordinateRounding rounding;  // of the vertices, in scene units
 
     std::vector<glm::dvec3> owned_vertices;
     std::vector<TriangleCorners> owned_triangles;
     std::vector<glm::dvec2> owned_uvs;
+    std::vector<glm::dvec3> owned_normals;
 
     MeshSource() = default;
     MeshSource(MeshSource&&) = default;
@@ -38,6 +40,7 @@ struct MeshSource {
         vertices = owned_vertices;
         triangles = owned_triangles;
         uvs = owned_uvs;
+        normals = owned_normals;
     }
     /// These triangles, borrowed from this, which must outlive them.
     MeshSource borrowed() const {

@@ -29,6 +29,12 @@ void keep_triangles(ObjectDescription& object) {
     if (auto* list = std::get_if<TrianglesObject>(&object.shape)) list->keep_triangles = true;
 }
 
+/// Makes a mesh flat, if the shape is one.
+void flatten(ObjectDescription& object) {
+    if (auto* mesh = std::get_if<MeshObject>(&object.shape)) mesh->smooth = 0;
+    if (auto* list = std::get_if<TrianglesObject>(&object.shape)) list->smooth = 0;
+}
+
 /// Makes the lights give no light, so that they are only visible.
 void put_out(EdgeLights& lights) {
     lights.glow = lights.glow.value_or(lights.color);
@@ -46,6 +52,7 @@ std::optional<SceneDescription> without_effect(const SceneDescription& scene, ui
     for (LightDescription& light : less.lights) take_from_light(light, effect);
     for (ObjectDescription& object : less.objects) {
         if (effect == effect_solids) keep_triangles(object);
+        if (effect == effect_smooth) flatten(object);
         if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
             take_from_light(solid->edge_lights, effect);
             if (effect == effect_lights_on_faces) put_out(solid->edge_lights);
@@ -53,6 +60,7 @@ std::optional<SceneDescription> without_effect(const SceneDescription& scene, ui
     }
     std::erase_if(less.objects, [&](const ObjectDescription& object) {
         if (std::holds_alternative<SphereObject>(object.shape)) return effect == effect_spheres;
+        if (std::holds_alternative<DiskObject>(object.shape)) return effect == effect_planes;
         const bool convex = std::holds_alternative<SolidObject>(object.shape);
         return effect == (convex ? effect_solids : effect_triangles);
     });

@@ -11,10 +11,12 @@ void add_metamorphic(Cases& cases);
 void add_mirrors(Cases& cases);
 void add_overlap(Cases& cases);
 void add_pieces(Cases& cases);
+void add_planes(Cases& cases);
 void add_refraction(Cases& cases);
 void add_shadows(Cases& cases);
 void add_size(Cases& cases);
 void add_sky(Cases& cases);
+void add_smooth(Cases& cases);
 void add_sums(Cases& cases);
 void add_time(Cases& cases);
 
@@ -34,10 +36,12 @@ const std::vector<Case>& all_cases() {
         add("mirrors/", add_mirrors);
         add("overlap/", add_overlap);
         add("pieces/", add_pieces);
+        add("planes/", add_planes);
         add("refraction/", add_refraction);
         add("shadows/", add_shadows);
         add("size/", add_size);
         add("sky/", add_sky);
+        add("smooth/", add_smooth);
         add("sums/", add_sums);
         add("time/", add_time);
         return cases.all;

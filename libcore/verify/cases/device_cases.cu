@@ -11,6 +11,7 @@
 #include "verify/cases/mirrors/paths.h"
 #include "verify/cases/refraction/lines.h"
 #include "verify/cases/shadows/local_light.h"
+#include "verify/cases/smooth/sides.h"
 #include "verify/device_run.h"
 
 namespace cistula::verify {
@@ -216,5 +217,6 @@ CISTULA_ON_DEVICES(shadows::OwnLight)
 CISTULA_ON_DEVICES(shadows::ThroughSheets)
 CISTULA_ON_DEVICES(shadows::ThroughSolids)
 CISTULA_ON_DEVICES(shadows::VisibleLightTree)
+CISTULA_ON_DEVICES(smooth::Sides)
 
 }  // namespace cistula::verify

@@ -109,6 +109,7 @@ class Objects : Part {
                 for (const dvec3& p : triangles->vertices) triangles->uvs.emplace_back(p.x, p.y + 0.5 * p.z);
             textured = !triangles->uvs.empty();
             if (scene_.objects.size() % 5 == 3) triangles->keep_triangles = false;  // convex ones are given by planes
+            if (scene_.objects.size() % 4 == 2) triangles->smooth = 100;
         } else if (auto* solid = std::get_if<SolidObject>(&shape)) {
             if (edge_lights_left_ > 0 && random_.chance(0.15) && !heavy_) add_edge_lights(solid->edge_lights);
         }

@@ -30,15 +30,16 @@ struct Incoming {
 };
 
 void add_falloff_lights(const std::vector<NormalizedLight>& lights, const Box& box,
-                        const std::vector<LightDistance>& distances, Incoming& to) {
+                        const std::vector<LightDistance>& distances, double bulge, Incoming& to) {
     double strongest = -1;
     auto known = distances.begin();
     for (size_t i = 0; i < lights.size(); ++i) {
         const NormalizedLight& light = lights[i];
         if (!light.falloff) continue;
         // The box is that of the exact corners; rounded ones may be slightly nearer.
-        double nearest = max_or_second(distance_to_box(box, light.position) - 0x1p-18, light.radius);
-        if (known != distances.end() && known->light == i) nearest = max_or_second((known++)->distance, nearest);
+        double nearest = max_or_second(distance_to_box(box, light.position) - bulge - 0x1p-18, light.radius);
+        if (known != distances.end() && known->light == i)
+            nearest = max_or_second((known++)->distance - bulge, nearest);
         double farthest = nearest;
         for (const dvec3& corner : box.corners()) farthest = max_or_second(length(corner - light.position), farthest);
         const dvec3 most = light.color / (nearest * nearest);
@@ -117,7 +118,7 @@ dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures, cons
         const MaterialDescription& m = source.materials[source.solids[i].material];
         if (local_share(m) == 0 || solids.boxes[i].empty()) continue;
         Incoming incoming;
-        add_falloff_lights(lights, solids.boxes[i], solids.distances[i], incoming);
+        add_falloff_lights(lights, solids.boxes[i], solids.distances[i], solids.bulges[i], incoming);
         const dvec3 texel =
             m.texture < 0 ? dvec3{1}
                           : textures.largest[static_cast<size_t>(textures.number[static_cast<size_t>(m.texture)])];

@@ -19,6 +19,7 @@ inline constexpr double largest_contrast = 0x1p32;
 struct SolidPlaces {
     std::vector<Box> boxes;                             // in the frame
     std::vector<std::vector<LightDistance>> distances;  // of lights, in their order
+    std::vector<double> bulges;                         // the farthest that points of a solid are lit off its faces
 };
 
 /// The bound per channel, without slack, in scene units. Spheres that are too bright for the sums only because their

@@ -248,7 +248,7 @@ class ConvexSearch {
 std::optional<ConvexSolid> convex_mesh(const SceneSource& source, uint32_t number,
                                        const SceneNormalization& normalization, const Contacts& contacts) {
     const SourceSolid& solid = source.solids[number];
-    if (!solid.is_mesh() || !solid.closed || solid.keep_triangles) return std::nullopt;
+    if (!solid.is_mesh() || !solid.closed || solid.keep_triangles || !solid.normals.empty()) return std::nullopt;
     if (source.materials[solid.material].texture >= 0 || solid.mesh.triangles.size() > most_convex_triangles)
         return std::nullopt;
     const double thickness = 3 * solid.thickness * normalization.factor;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cistula/numerics/vec.h"
+#include "scene/compile/meshes/corner_normals.h"
 
 namespace cistula {
 namespace {
@@ -11,11 +12,18 @@ namespace {
 MeshSource joined_mesh(const std::vector<const MeshSource*>& meshes) {
     const bool with_uvs =
         std::all_of(meshes.begin(), meshes.end(), [](const MeshSource* m) { return !m->uvs.empty(); });
+    const bool with_normals =
+        std::any_of(meshes.begin(), meshes.end(), [](const MeshSource* m) { return !m->normals.empty(); });
     MeshSource joined;
     for (const MeshSource* mesh : meshes) {
         const auto first = static_cast<uint32_t>(joined.owned_vertices.size());
         joined.owned_vertices.insert(joined.owned_vertices.end(), mesh->vertices.begin(), mesh->vertices.end());
         if (with_uvs) joined.owned_uvs.insert(joined.owned_uvs.end(), mesh->uvs.begin(), mesh->uvs.end());
+        if (with_normals) {
+            joined.owned_normals.resize(first, glm::dvec3(0));
+            joined.owned_normals.insert(joined.owned_normals.end(), mesh->normals.begin(), mesh->normals.end());
+            joined.owned_normals.resize(joined.owned_vertices.size(), glm::dvec3(0));
+        }
         for (const TriangleCorners& t : mesh->triangles)
             joined.owned_triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
         joined.doubled_polygons += mesh->doubled_polygons;
@@ -159,6 +167,7 @@ MeshSource part_of(const MeshSource& mesh, const std::vector<TriangleCorners>& t
         if (vertex != last) {
             part.owned_vertices.push_back(mesh.vertices[vertex]);
             if (!mesh.uvs.empty()) part.owned_uvs.push_back(mesh.uvs[vertex]);
+            if (!mesh.normals.empty()) part.owned_normals.push_back(mesh.normals[vertex]);
         }
         last = vertex;
         *corner = static_cast<uint32_t>(part.owned_vertices.size() - 1);
@@ -189,11 +198,15 @@ void add_mesh_solids(SceneSource& source, SourceSolid solid, MeshPieces pieces) 
     const bool any_turned = std::find(pieces.turned.begin(), pieces.turned.end(), 1) != pieces.turned.end();
     const size_t count = std::max<size_t>(pieces.thickness.size(), 1);
     std::vector<std::vector<TriangleCorners>> triangles(count);  // of each solid
+    std::vector<std::vector<uint8_t>> turned(count);             // of each of these
+    const size_t first = source.solids.size();
     if (count > 1 || !all_kept || any_turned)
         for (size_t t = 0; t < pieces.source.size(); ++t) {
             TriangleCorners corners = solid.mesh.triangles[pieces.source[t]];
-            if (pieces.closed && pieces.turned[t]) std::swap(corners[1], corners[2]);
+            const bool is_turned = pieces.closed && pieces.turned[t] != 0;
+            if (is_turned) std::swap(corners[1], corners[2]);
             triangles[pieces.closed ? pieces.solid[t] : 0].push_back(corners);
+            turned[pieces.closed ? pieces.solid[t] : 0].push_back(is_turned);
         }
     for (uint32_t body = 0; count > 1 && body < count; ++body) {
         SourceSolid& own = source.solids.emplace_back();
@@ -205,16 +218,19 @@ void add_mesh_solids(SceneSource& source, SourceSolid solid, MeshPieces pieces) 
         own.thickness = pieces.thickness[body];
         own.body = body;
         own.keep_triangles = solid.keep_triangles;
+        own.smooth = solid.smooth;
     }
-    if (count > 1) return;
-    if (!all_kept || any_turned) {
-        solid.mesh.owned_triangles = std::move(triangles[0]);
-        solid.mesh.triangles = solid.mesh.owned_triangles;
-    } else {
-        solid.edges = std::move(pieces.edges);
+    if (count == 1) {
+        if (!all_kept || any_turned) {
+            solid.mesh.owned_triangles = std::move(triangles[0]);
+            solid.mesh.triangles = solid.mesh.owned_triangles;
+        } else {
+            solid.edges = std::move(pieces.edges);
+        }
+        if (pieces.closed) solid.thickness = pieces.thickness[0];
+        source.solids.push_back(std::move(solid));
     }
-    if (pieces.closed) solid.thickness = pieces.thickness[0];
-    source.solids.push_back(std::move(solid));
+    find_corner_normals(source, std::span(source.solids).subspan(first), turned);
 }
 
 }  // namespace cistula

@@ -97,6 +97,7 @@ MeshPart part_of(const PolygonMesh& from, const MeshObject& object) {
             append_polygon(mesh.owned_vertices, from.polygon(i), mesh.owned_triangles);
     }
     mesh.owned_uvs = from.uvs;
+    for (const dvec3& n : from.normals) mesh.owned_normals.push_back(rotation(n));
     mesh.view_owned();
     return part;
 }
@@ -105,13 +106,15 @@ MeshPart part_of(const PolygonMesh& from, const MeshObject& object) {
 void part_corners(PolygonMesh& mesh) {
     if (mesh.corner_uvs.empty()) return;
     mesh.corner_uvs.resize(mesh.corners.size());
-    std::vector<dvec3> vertices;
+    std::vector<dvec3> vertices, normals;
     vertices.reserve(mesh.corners.size());
     for (uint32_t& corner : mesh.corners) {
         vertices.push_back(mesh.vertices[corner]);
+        if (!mesh.normals.empty()) normals.push_back(mesh.normals[corner]);
         corner = static_cast<uint32_t>(vertices.size() - 1);
     }
     mesh.vertices = std::move(vertices);
+    mesh.normals = std::move(normals);
     mesh.uvs = std::exchange(mesh.corner_uvs, {});
 }
 

@@ -12,7 +12,7 @@
 
 namespace cistula {
 
-/// The triangles of a mesh that share one material; with uvs where the mesh has them.
+/// The triangles of a mesh that share one material; with uvs and normals where the mesh has them.
 struct MeshPart {
     std::string name;
     MeshSource mesh;

@@ -18,14 +18,15 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-constexpr uint32_t no_uv = std::numeric_limits<uint32_t>::max();
+constexpr uint32_t no_index = std::numeric_limits<uint32_t>::max();
 
 /// Faces of one object, group and material.
 struct Group {
     std::string name, material;
-    std::vector<uint32_t> vertices, uvs;  // numbers of each corner's, from 0
-    std::vector<size_t> ends;             // of each face, in these
+    std::vector<uint32_t> vertices, uvs, normals;  // numbers of each corner's, from 0
+    std::vector<size_t> ends;                      // of each face, in these
     bool has_uvs = false;
+    bool has_normals = false;
 };
 
 /// The largest index from 1 that faces have named, and where: what it names may come later.
@@ -47,9 +48,15 @@ class ObjReader {
         }
         check_largest(largest_vertex_, positions_.size(), "vertex");
         check_largest(largest_uv_, uvs_.size(), "texture coordinate");
+        check_largest(largest_normal_, normals_.size(), "normal");
         read_libraries();
         std::vector<PolygonMesh> meshes;
-        for (Group& group : groups_) meshes.push_back(mesh_of(group));
+        bool has_normals = false;
+        for (Group& group : groups_) {
+            has_normals |= group.has_normals;
+            meshes.push_back(mesh_of(group));
+        }
+        if (has_smoothing_groups_ && !has_normals) library_.ignored.add("s");
         warn();
         return meshes;
     }
@@ -69,6 +76,10 @@ class ObjReader {
             uvs_.push_back({number(1), lines_.words().size() > 2 ? number(2) : 0});
             if (!std::isfinite(uvs_.back().x) || !std::isfinite(uvs_.back().y))
                 fail("a texture coordinate is not finite");
+        } else if (key == "vn") {
+            normals_.push_back({number(1), number(2), number(3)});
+        } else if (key == "s") {
+            has_smoothing_groups_ |= lines_.rest(1) != "off" && lines_.rest(1) != "0";
         } else if (key == "f") {
             read_face();
         } else if (key == "o" || key == "g") {
@@ -79,8 +90,7 @@ class ObjReader {
         } else if (key == "mtllib") {
             library_lines_.emplace_back(lines_.rest(1));
         } else if (std::find(std::begin(unused), std::end(unused), key) == std::end(unused)) {
-            const bool is_flat = key == "s" && (lines_.rest(1) == "off" || lines_.rest(1) == "0");
-            if (!is_flat) library_.ignored.add(key);
+            library_.ignored.add(key);
         }
     }
 
@@ -103,7 +113,7 @@ class ObjReader {
         const auto& words = lines_.words();
         if (words.size() < 4) fail(fmt::format("a face needs at least 3 corners, found {}", words.size() - 1));
         if (!in_group_) {
-            groups_.push_back({starts_with_name_ && !name_.empty() ? name_ : material_, material_, {}, {}, {}});
+            groups_.push_back({starts_with_name_ && !name_.empty() ? name_ : material_, material_, {}, {}, {}, {}});
             in_group_ = true;
             starts_with_name_ = false;
         }
@@ -118,11 +128,11 @@ class ObjReader {
         const size_t second = slash == word.size() ? slash : std::min(word.find('/', slash + 1), word.size());
         group.vertices.push_back(index(word.substr(0, slash), positions_.size(), largest_vertex_, "vertex"));
         const std::string_view uv = slash == word.size() ? "" : word.substr(slash + 1, second - slash - 1);
-        group.uvs.push_back(uv.empty() ? no_uv : index(uv, uvs_.size(), largest_uv_, "texture coordinate"));
+        group.uvs.push_back(uv.empty() ? no_index : index(uv, uvs_.size(), largest_uv_, "texture coordinate"));
         group.has_uvs |= !uv.empty();
         const std::string_view normal = second < word.size() ? word.substr(second + 1) : "";
-        if (!normal.empty() && !decimal<int64_t>(normal))
-            fail("expected the number of a normal, found " + quoted(normal));
+        group.normals.push_back(normal.empty() ? no_index : index(normal, normals_.size(), largest_normal_, "normal"));
+        group.has_normals |= !normal.empty();
     }
 
     /// An index from 0, of one from 1, or from -1 backward.
@@ -176,7 +186,9 @@ class ObjReader {
         mesh.vertices.reserve(group.vertices.size());
         for (const uint32_t v : group.vertices) mesh.vertices.push_back(positions_[v]);
         if (group.has_uvs)
-            for (const uint32_t t : group.uvs) mesh.uvs.push_back(t == no_uv ? dvec2{0} : uvs_[t]);
+            for (const uint32_t t : group.uvs) mesh.uvs.push_back(t == no_index ? dvec2{0} : uvs_[t]);
+        if (group.has_normals)
+            for (const uint32_t n : group.normals) mesh.normals.push_back(n == no_index ? dvec3{0} : normals_[n]);
         mesh.corners = std::move(group.vertices);
         for (uint32_t i = 0; i < mesh.corners.size(); ++i) mesh.corners[i] = i;
         mesh.ends = std::move(group.ends);
@@ -198,9 +210,10 @@ class ObjReader {
     const ObjSurroundings& surroundings_;
     std::vector<std::string>& warnings_;
     const StopSignal stop_;
-    std::vector<dvec3> positions_;
+    std::vector<dvec3> positions_, normals_;
     std::vector<dvec2> uvs_;
-    LargestIndex largest_vertex_, largest_uv_;
+    LargestIndex largest_vertex_, largest_uv_, largest_normal_;
+    bool has_smoothing_groups_ = false;
     std::string name_, material_;  // of the faces that follow
     bool in_group_ = false;
     bool starts_with_name_ = false;

@@ -246,17 +246,19 @@ class PlyReader {
 
     void read_vertices() {
         const auto find = [this](auto... names) { return element_->find({names...}, false); };
-        const size_t place[5] = {find("x"), find("y"), find("z"), find("u", "s", "tx", "texture_u"),
-                                 find("v", "t", "ty", "texture_v")};
+        const size_t place[8] = {
+            find("x"),  find("y"),  find("z"), find("u", "s", "tx", "texture_u"), find("v", "t", "ty", "texture_v"),
+            find("nx"), find("ny"), find("nz")};
         const size_t none = element_->properties.size();
         for (int axis = 0; axis < 3; ++axis)
             if (place[axis] == none) fail_at(element_->line, "element vertex lacks one of the properties x, y and z");
         const bool has_uvs = place[3] < none && place[4] < none;
+        const bool has_normals = place[5] < none && place[6] < none && place[7] < none;
         for (const std::string_view normal : {"nx", "ny", "nz"})
-            if (find(normal) < none) ignored_.add(normal);
-        double row[5] = {};
+            if (!has_normals && find(normal) < none) ignored_.add(normal);
+        double row[8] = {};
         const auto keep = [&](size_t property, double value) {
-            for (int i = 0; i < 5; ++i)
+            for (int i = 0; i < 8; ++i)
                 if (place[i] == property) row[i] = value;
         };
         mesh_.vertices.reserve(element_->count);
@@ -265,6 +267,7 @@ class PlyReader {
             [&] {
                 mesh_.vertices.push_back({row[0], row[1], row[2]});
                 if (has_uvs) add_uv(mesh_.uvs, row[3], row[4]);
+                if (has_normals) mesh_.normals.push_back({row[5], row[6], row[7]});
             });
     }
 

@@ -19,9 +19,10 @@ struct PolygonMesh {
     std::string name;
     std::optional<MaterialDescription> material;
     std::vector<glm::dvec3> vertices;
-    std::vector<glm::dvec2> uvs;    // one per vertex, or none; in MeshData, v counts from the top of the picture
-    std::vector<uint32_t> corners;  // of all polygons
-    std::vector<size_t> ends;       // of each polygon, in `corners`; none: triangles
+    std::vector<glm::dvec2> uvs;      // one per vertex, or none; in MeshData, v counts from the top of the picture
+    std::vector<glm::dvec3> normals;  // one per vertex, or none; of any length, 0 where the file gives none
+    std::vector<uint32_t> corners;    // of all polygons
+    std::vector<size_t> ends;         // of each polygon, in `corners`; none: triangles
     /// One per corner, or none, of the readers alone: they replace `uvs`. Those of the last corners may lack, and are
     /// 0.
     std::vector<glm::dvec2> corner_uvs;

@@ -167,7 +167,7 @@ struct FresnelEqual {
         material.fresnel = 1;
         material.transparency = Transparency::partial;
         const InterfaceSplit<Real> split = split_at<Real, Effects<all_effects>>(
-            setup.scene, material, direction, normal, InteriorList(), InteriorList(), false);
+            setup.scene, material, direction, normal, InteriorList(), InteriorList(), false, normal, false);
         tally.expect(!found.total && found.reflectance == Real(0) && found.direction == renormalized(direction) &&
                      !split.bends && split.through == direction && split.reflection == Real(0) &&
                      split.filter == material.tint * Real(0.75));
