@@ -1,6 +1,6 @@
-// Cistula against POV-Ray 3.7, on scenes/benchmark.json, solids of glass and a mesh between mirrors: the time to trace
-// them on 1, 2 and all threads, and whether the pictures agree. bench_povray [FOLDER]: scenes and pictures go there
-// (out/bench).
+// Cistula against POV-Ray 3.7, on scenes/benchmark.json, solids of glass, a mesh between mirrors, balls of glass, and
+// bodies under a sky: the time to trace them on 1, 2 and all threads, and whether the pictures agree. bench_povray
+// [FOLDER]: scenes and pictures go there (out/bench).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -148,6 +148,31 @@ std::filesystem::path write_glass_scene(const std::filesystem::path& folder) {
     return path;
 }
 
+/// A file of a scene of balls and of solids by planes under a graded sky.
+std::filesystem::path write_sky_scene(const std::filesystem::path& folder) {
+    const std::filesystem::path path = folder / "bodies_under_a_sky.json";
+    write_file_atomically(path.string(), R"({"film": {"width": 640, "height": 480}, "depth": 16, "ambient": 0.3,
+"background": {"axis": [0.1, 0.2, 1], "stops": [[0, [0.2, 0.35, 0.7]], [70, [0.6, 0.7, 0.85]], [90, [1, 0.9, 0.75]],
+    [90, [0.3, 0.28, 0.25]], [180, 0.1]]},
+"camera": {"position": [0, -8, 3], "target": [0, 0, 1.1], "fov": 50},
+"textures": {"checker": {"checker": [0.8, 0.3], "repeat": [6, 6]}},
+"materials": {
+    "floor": {"color": 1, "texture": "checker", "diffuse": 0.8, "specular": 0},
+    "paint": {"color": [0.8, 0.3, 0.2], "diffuse": 0.7, "specular": 0.5, "exponent": 40},
+    "mirror": {"color": [0.7, 0.7, 0.6], "diffuse": 0.3, "specular": 0.4, "exponent": 60, "reflection": 0.6},
+    "glass": {"color": 1, "specular": 0, "transmission": 1, "fresnel": true, "index": 1.5, "absorption": [0.1, 0.3, 0.2]}},
+"objects": [
+{"quad": [[-6, -6, 0], [6, -6, 0], [6, 6, 0], [-6, 6, 0]], "material": "floor"},
+{"solid": "sphere", "center": [-2.4, 0.4, 1], "radius": 1, "material": "mirror"},
+{"solid": "sphere", "center": [0.1, -1.4, 0.9], "radius": 0.9, "material": "glass"},
+{"solid": "sphere", "center": [1.2, 1.6, 0.7], "radius": 0.7, "material": "paint"},
+{"solid": "convex", "planes": [[1, 0, 0, 0.8], [-1, 0, 0, 0.8], [0, 1, 0, 0.7], [0, -1, 0, 0.7], [0, 0, 1, 1], [0, 0, -1, 1],
+    [1, 1, 1, 1.5], [-1, -1, 1, 1.5], [1, -1, 1, 1.6]], "center": [2.7, 0, 1.01], "rotate": [0, 0, 25], "material": "mirror"},
+{"solid": "prism", "sides": 7, "radius": 0.7, "height": 1.2, "center": [-0.9, 1.9, 0.61], "material": "paint"}],
+"lights": [{"position": [4, -5, 8], "color": 0.7}, {"position": [-6, -3, 7], "color": 0.3}]})");
+    return path;
+}
+
 /// A file of mesh.json's scene, without what POV-Ray lacks: colored highlights and our textures.
 std::filesystem::path write_mesh_scene(const std::filesystem::path& folder) {
     nlohmann::json scene = nlohmann::json::parse(std::ifstream(scene_file("mesh.json")));
@@ -165,7 +190,8 @@ void register_all(const std::vector<std::string>& arguments) {
     std::filesystem::create_directories(folder);
     const int cores = int(std::thread::hardware_concurrency());
     for (const Work& work : {Work(scene_file("benchmark.json"), 16, folder),
-                             Work(write_glass_scene(folder), 24, folder), Work(write_mesh_scene(folder), 12, folder)}) {
+                             Work(write_glass_scene(folder), 24, folder), Work(write_mesh_scene(folder), 12, folder),
+                             Work(scene_file("spheres.json"), 12, folder), Work(write_sky_scene(folder), 16, folder)}) {
         const SceneDescription scene = read_scene(work.scene.string());
         write_file_atomically(work.povray_scene.string(),
                               povray_scene(scene, camera_at(scene.camera, 0), width, height, work.depth));

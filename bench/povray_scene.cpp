@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/error.h"
 #include "scene/compile/scene_normalization.h"
 #include "scene/compile/scene_source.h"
@@ -32,7 +34,7 @@ void check(const SceneDescription& scene, const SceneSource& source) {
     for (const MaterialDescription& m : source.materials) {
         if (m.index == 1 ? m.fresnel : !m.fresnel || m.transmission < 1)
             refuse("material " + m.name + " refracts; its index must be 1, or it must be clear and have Fresnel");
-        if (m.absorption != dvec3(0)) refuse("material " + m.name + " absorbs; its absorption must be 0");
+        if (m.absorption != dvec3(0) && !m.fresnel) refuse("material " + m.name + " absorbs, but has no Fresnel");
         if (m.tint != dvec3(1)) refuse("material " + m.name + " tints what passes; its tint must be white");
         if (!is_gray(m.specular_color)) refuse("material " + m.name + " has a colored highlight; it must be gray");
         if (m.texture < 0) continue;
@@ -44,8 +46,9 @@ void check(const SceneDescription& scene, const SceneSource& source) {
     if (!is_gray(scene.ambient)) refuse("the ambient color must be gray");
     for (const LightDescription& light : scene.lights)
         if (light.falloff || light.radius > 0) refuse("a light falls off or is seen; it must do neither");
+    if (scene.sky && scene.sky->stops.empty()) refuse("the background is a picture; it must be a color or a gradient");
     for (const SourceSolid& solid : source.solids)
-        if (solid.platonic && solid.platonic->edge_lights.count > 0) refuse("a solid has lights on its edges");
+        if (solid.polyhedron && solid.polyhedron->edge_lights.count > 0) refuse("a solid has lights on its edges");
 }
 
 /// Two cells a unit of uv times repeat, placed by the first triangle's uvs (a planar object has one such map).
@@ -70,6 +73,31 @@ std::string checker(const TextureDescription& texture, const dvec3& base, const 
                        corner.z);
 }
 
+/// POV-Ray's attenuation with a fade_power from 1000 on: exp((fade_color - 1) length / fade_distance).
+std::string interior(const MaterialDescription& m) {
+    if (!m.fresnel) return "";
+    const std::string fade = m.absorption == dvec3(0) ? ""
+                                                      : fmt::format(" fade_distance 1 fade_power 1001 fade_color {}",
+                                                                    color(dvec3(1) - m.absorption));
+    return fmt::format(" interior {{ ior {}{} }}", m.index, fade);
+}
+
+/// What is around: colors linear in the cosine of the angle to an axis, which POV-Ray's gradient is over (1 + cosine)
+/// / 2.
+std::string around(const SceneDescription& scene) {
+    if (!scene.sky) return fmt::format("background {{ {} }}\n", color(scene.background));
+    std::string map;
+    for (size_t i = scene.sky->stops.size(); i-- > 0;) {
+        const SkyColor& stop = scene.sky->stops[i];
+        map += fmt::format(" [{} {}]", 0.5 + 0.5 * std::cos(stop.degrees * (3.14159265358979323846 / 180)),
+                           color(stop.color));
+    }
+    // A gradient repeats from 1 on: it is stretched by a little, so that the axis itself is not there.
+    return fmt::format("sky_sphere {{ pigment {{ gradient {} color_map {{{} }} scale {} translate {} }} }}\n",
+                       vector(normalized(scene.sky->axis)), map, 2 * (1 + 1e-9),
+                       vector(-(1 + 1e-9) * normalized(scene.sky->axis)));
+}
+
 /// POV-Ray weakens the ambient and diffuse light of what transmits kt by 1 - kt, but neither its highlights nor its
 /// mirrored light; Cistula weakens all local light by 1 - kr - kt.
 std::string texture(const SceneDescription& scene, const MaterialDescription& m, const MeshSource& mesh) {
@@ -84,8 +112,7 @@ std::string texture(const SceneDescription& scene, const MaterialDescription& m,
                                                   : "";
     return fmt::format("texture {{ pigment {{ {} }} finish {{ ambient {} diffuse {} phong {} phong_size {} {}}} }}{}",
                        pigment, m.ambient * scene.ambient.x * painted, m.diffuse * painted,
-                       m.specular * m.specular_color.x * local, m.exponent, mirror,
-                       m.fresnel ? fmt::format(" interior {{ ior {} }}", m.index) : "");
+                       m.specular * m.specular_color.x * local, m.exponent, mirror, interior(m));
 }
 
 MeshSource triangles_of(const SolidObject& solid) {
@@ -106,7 +133,7 @@ std::string povray_scene(const SceneDescription& scene, const CameraFrame& frame
     text +=
         fmt::format("global_settings {{ assumed_gamma 1.0 ambient_light rgb 1 max_trace_level {} adc_bailout 0 }}\n",
                     max_trace_level);
-    text += fmt::format("background {{ {} }}\n", color(scene.background));
+    text += around(scene);
     // All three vectors are given, so POV-Ray's left-handed default does not come in.
     const Camera& camera = frame.camera;
     text += fmt::format("camera {{ perspective location {} direction {} right {} up {} }}\n", vector(camera.position),
@@ -116,8 +143,13 @@ std::string povray_scene(const SceneDescription& scene, const CameraFrame& frame
         if (light.color != dvec3(0))
             text += fmt::format("light_source {{ {} {} }}\n", vector(light.position), color(light.color));
     for (const SourceSolid& solid : source.solids) {
-        const MeshSource made = solid.platonic ? triangles_of(*solid.platonic) : MeshSource();
-        const MeshSource& mesh = solid.platonic ? made : solid.mesh;
+        if (solid.sphere) {
+            text += fmt::format("sphere {{ {}, {} {} }}\n", vector(solid.sphere->center), solid.sphere->radius,
+                                texture(scene, source.materials[solid.material], solid.mesh));
+            continue;
+        }
+        const MeshSource made = solid.polyhedron ? triangles_of(*solid.polyhedron) : MeshSource();
+        const MeshSource& mesh = solid.polyhedron ? made : solid.mesh;
         text += "mesh {\n";
         for (const auto& t : mesh.triangles)
             text += fmt::format("  triangle {{ {}, {}, {} }}\n", vector(mesh.vertices[t[0]]),

@@ -367,6 +367,7 @@ FrameSettings frame_settings(const RenderRequest& request, const SceneDescriptio
     if (settings.depth == 0) settings.depth = settings.adaptive() ? largest_depth : own.depth;
     if (settings.cutoff < 0) settings.cutoff = own.cutoff;
     settings.layers = layers_for(request.channels);
+    if (request.channels.transparent && scene.sky) settings.layers.path = true;  // tells what is left out of a pixel
     settings.parts = parts_for(request.channels);
     PixelRect& crop = settings.crop;
     if (crop.width == 0) crop = {0, 0, settings.full_width, settings.full_height};

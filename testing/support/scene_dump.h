@@ -71,6 +71,10 @@ class SceneDump {
     void write(const SceneDescription& s) {
         line("film", s.film.width, s.film.height, s.film.frames, s.film.supersample);
         line("light", s.depth, s.cutoff, s.ambient, s.background);
+        if (s.sky) {
+            line("sky", s.sky->axis, s.sky->texture, s.sky->rotation, s.sky->scale);
+            for (const auto& stop : s.sky->stops) line(" stop", stop.degrees, stop.color);
+        }
         line("camera", s.camera.position, s.camera.target, s.camera.up, s.camera.field_of_view, s.camera.time_step);
         line("paths", s.camera.position_path, s.camera.target_path);
         for (const auto& t : s.textures)

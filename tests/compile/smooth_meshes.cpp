@@ -1,4 +1,4 @@
-// Normals of compiled meshes (docs/rules.md, 16): which corners have which, what is flat, and what is refused.
+// Normals of compiled meshes (docs/rules.md, 17): which corners have which, what is flat, and what is refused.
 #include <gtest/gtest.h>
 
 #include "cistula/model/triangle_sides.h"

@@ -128,8 +128,8 @@ CISTULA_HOST_NOINLINE void closest_convex(const Scene& scene, uint32_t index, co
         closest_entry(scene, index, scene.solids[index], ray, best);
 }
 
-/// The solid around a ray whose next hit is surely that solid's own face, since its box meets no other primitive;
-/// no_solid for any other ray.
+/// The solid around a ray whose next hit is surely that solid's own face, since nothing else is inside it; no_solid for
+/// any other ray.
 template <class Real, class Media, class Scene>
 CISTULA_INLINE uint32_t enclosing(const Scene& scene, const Ray<Real, Media>& ray) {
     const uint32_t solid = ray.media.only();

@@ -97,4 +97,13 @@ CISTULA_INLINE VisibleLightHit<Lanes<T, n>> closest_visible_light(const Scene& s
     return best;
 }
 
+/// The radiances of a sky that rays in lanes end on, where `active` holds.
+template <class T, int n, class Scene>
+CISTULA_NOINLINE Vec3<Lanes<T, n>> sky_radiance(const Scene& scene, const Vec3<Lanes<T, n>>& directions,
+                                                const MaskOf<Lanes<T, n>>& active) {
+    LaneVectors<Lanes<T, n>> radiances(Vec3<Lanes<T, n>>(Lanes<T, n>(T(0))));
+    for_each_lane(active, [&](int lane) { radiances.set(lane, sky_radiance(scene, lane_of(directions, lane))); });
+    return radiances.all();
+}
+
 }  // namespace cistula

@@ -249,7 +249,7 @@ class LaneTile {
             if (!primary_ray(scene_, frame_, direction, ray, start)) {
                 SumsOf<T, E> sums(frame_.tree, scene_, *pixel.record, flags);
                 if constexpr (E::has(fills_layers)) sums.divide(frame_.layers, pixel.layers, scene_.light_groups);
-                sums.add(scene_.background, LightSource::background);
+                sums.add(background_radiance<E>(scene_, Vec3<T>(direction)), LightSource::background);
                 ++pixel.rays;
                 continue;
             }

@@ -88,6 +88,8 @@ struct ConstantScene {
     Span<uint32_t> tree_items;
     Span<LightNode> visible_light_tree;
     Span<uint32_t> light_groups;
+    Span<SkyStop> sky_stops;
+    Sky sky;
     Vec3<Real> background;
     Vec3<Real> bound;
     Real largest_bound;

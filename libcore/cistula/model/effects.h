@@ -27,9 +27,10 @@ enum Effect : uint32_t {
     effect_lights_on_faces = 1u << 16,  // a point light lies on a face or an edge (docs/rules.md, 5)
     effect_contacts = 1u << 17,         // faces of several solids lie in one plane (docs/rules.md, 11)
     effect_spheres = 1u << 18,          // solid spheres (docs/rules.md, 14)
-    effect_smooth = 1u << 19,           // meshes with normals at their corners (docs/rules.md, 16)
+    effect_sky = 1u << 19,              // what rays meet that meet nothing depends on their direction
+    effect_smooth = 1u << 20,           // meshes with normals at their corners (docs/rules.md, 17)
 };
-inline constexpr int effect_count = 20;
+inline constexpr int effect_count = 21;
 inline constexpr uint32_t all_effects = (1u << effect_count) - 1;
 
 /// A bit of masks whose code also fills the layers of a film (layers.h). No scene calls for it.
@@ -39,10 +40,10 @@ inline constexpr uint32_t keeps_budget = 1u << (effect_count + 1);
 
 /// Effect names, in the order of the bits, as in --explain, --stats and the documentation.
 inline constexpr const char* effect_names[effect_count] = {
-    "texture",        "diffuse",         "specular",   "opaque-shadows", "transparent-shadows",
-    "reflection",     "transmission",    "refraction", "fresnel",        "absorption",
-    "visible-lights", "light-falloff",   "tint",       "solids",         "triangles",
-    "insides",        "lights-on-faces", "contacts",   "spheres",        "smooth"};
+    "texture",      "diffuse",    "specular",  "opaque-shadows", "transparent-shadows", "reflection",
+    "transmission", "refraction", "fresnel",   "absorption",     "visible-lights",      "light-falloff",
+    "tint",         "solids",     "triangles", "insides",        "lights-on-faces",     "contacts",
+    "spheres",      "sky",        "smooth"};
 
 /// A set of effects as a type: `if constexpr (E::has(...))` removes the code of all others.
 template <uint32_t Mask>
@@ -73,7 +74,7 @@ inline constexpr uint32_t effect_masks[] = {
     mirrors,
     clear_bodies,
     clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces,
-    all_effects & ~(effect_spheres | effect_smooth),
+    all_effects & ~(effect_spheres | effect_sky | effect_smooth),
     all_effects,
     all_effects | keeps_budget,
     all_effects | keeps_budget | fills_layers,

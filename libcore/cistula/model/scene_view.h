@@ -81,8 +81,8 @@ struct alignas(16) Solid {
     uint32_t flat;            // sheet: 1 if all of it lies in one plane, to within a few u M: a line that starts
                               // on it does not meet it again
     uint32_t may_touch;       // convex, mesh: 1 if its padded box meets that of another such solid
-    uint32_t isolated;        // convex: 1 if its padded box meets no other primitive's: whatever a ray inside it
-                              // hits next is its own face
+    uint32_t isolated;        // convex: 1 if nothing else is inside it: whatever a ray inside it hits next is its
+                              // own face
     uint32_t first_near, near_count;  // the shared planes that reach it: near_planes[first_near + i]
 };
 
@@ -91,7 +91,7 @@ CISTULA_INLINE bool is_ball(const Solid& solid) {
     return solid.kind == SolidKind::convex && solid.slab_count == 0;
 }
 
-/// Whether triangles have normals at their corners (docs/rules.md, 16): those of a face are normals[first_slab - 1 +
+/// Whether triangles have normals at their corners (docs/rules.md, 17): those of a face are normals[first_slab - 1 +
 /// 3 (triangle - first_triangle) + corner], outward, all 0 if it is flat.
 CISTULA_INLINE bool is_smooth(const Solid& solid) {
     return solid.kind != SolidKind::convex && solid.first_slab != 0;
@@ -239,6 +239,22 @@ struct Texture {
     double repeat[2];     // factors of uv
 };
 
+enum class SkyKind : uint32_t { none, gradient, picture };
+
+/// A color of a gradient, at an angle to its axis.
+struct SkyStop {
+    double cosine;
+    Vec3<double> color;
+};
+
+/// What is around a scene in place of a background of one color.
+struct Sky {
+    SkyKind kind = SkyKind::none;
+    uint32_t texture = 0;  // of a picture
+    double scale = 1;      // of its texels
+    Vec3<double> axes[3];  // x, y and z of a picture, unit; a gradient's axis is the last
+};
+
 /// Maximum depth of a tree, and so the size of traversal stacks.
 inline constexpr int max_tree_depth = 48;
 
@@ -295,6 +311,8 @@ struct SceneView {
     Span<uint32_t> tree_items;
     Span<LightNode> visible_light_tree;  // over visible_lights; empty where there are few
     Span<uint32_t> light_groups;         // of each of lights
+    Span<SkyStop> sky_stops;             // of a gradient
+    Sky sky;
     Vec3<Real> background;
     Vec3<Real> bound;    // radiance bound B per channel, at most 1, slack included
     Real largest_bound;  // largest component of bound

@@ -1,4 +1,4 @@
-// Smooth meshes, whose corners have normals (docs/rules.md, 16). What a ray meets, and on which side new ones start, is
+// Smooth meshes, whose corners have normals (docs/rules.md, 17). What a ray meets, and on which side new ones start, is
 // that of the flat triangles; these normals say where light is mirrored and bent, and how it falls on a face.
 #pragma once
 

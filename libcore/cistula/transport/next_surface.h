@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cistula/lights/visible_light.h"
+#include "cistula/model/sky.h"
 #include "cistula/shading/absorption.h"
 #include "cistula/shading/interface.h"
 #include "cistula/shading/surface_event.h"
@@ -42,7 +43,7 @@ class NextSurface {
             const bool light = visible.found();
             if (light || !hit.found()) {
                 absorption.dim(scene_, branch.ray.media, light ? visible.t : hit.t, branch.weight);
-                sums_.add(branch.weight * light_or_background(visible),
+                sums_.add(branch.weight * light_or_background(visible, branch.ray.direction),
                           light ? LightSource::visible_light : LightSource::background);
                 return false;
             }
@@ -87,7 +88,8 @@ class NextSurface {
             const MaskOf<Real> ends = left & (light.found() | !hit.found());
             if (any(ends)) {
                 absorption.dim(scene_, branch.ray.media, select(light.found(), light.t, hit.t), branch.weight, ends);
-                sums_.add_end(branch.weight * light_or_background(light, ends), light.found(), ends);
+                sums_.add_end(branch.weight * light_or_background(light, branch.ray.direction, ends), light.found(),
+                              ends);
                 assign_where(ends, visible.t, light.t);
                 assign_where(ends, visible.light, light.light);
             }
@@ -169,8 +171,11 @@ class NextSurface {
 
     /// The radiances of visible lights, or the background where there is none.
     CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const VisibleLightHit<Real>& visible,
+                                                  [[maybe_unused]] const Vec3<Real>& direction,
                                                   [[maybe_unused]] const MaskOf<Real>& active) const {
         Vec3<Real> radiance = spread<Real>(scene_.background);
+        if constexpr (E::has(effect_sky))
+            if (scene_.sky.kind != SkyKind::none) radiance = sky_radiance(scene_, direction, active & !visible.found());
         if constexpr (E::has(effect_visible_lights))
             for_each_value(active & visible.found(), visible.light, [&](uint32_t light, const MaskOf<Real>& same) {
                 assign_where(same, radiance, spread<Real>(scene_.visible_lights[light].radiance));
@@ -198,10 +203,11 @@ class NextSurface {
     }
 
     /// The radiance of the visible light `visible`, or the background if there is none.
-    CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const VisibleLightHit<Real>& visible) const {
+    CISTULA_INLINE Vec3<Real> light_or_background([[maybe_unused]] const VisibleLightHit<Real>& visible,
+                                                  const Vec3<Real>& direction) const {
         if constexpr (E::has(effect_visible_lights))
             if (visible.light != no_light) return scene_.visible_lights[visible.light].radiance;
-        return scene_.background;
+        return background_radiance<E>(scene_, direction);
     }
 
     /// The visible light that the ray meets before `hit`. If the ray may go straight on from there, its whole line is

@@ -292,7 +292,7 @@ CISTULA_INLINE bool render_sample(const PixelTask<E, Intersector, Stack>& task, 
     ++task.work.rays.primary;
     double start;
     if (!primary_ray(task.scene, frame, direction, ray, start)) {
-        sums.add(task.scene.background, LightSource::background);
+        sums.add(background_radiance<E>(task.scene, Vec3<Real>(direction)), LightSource::background);
         return true;
     }
     if (sample.middle) {

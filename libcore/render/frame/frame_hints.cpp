@@ -29,6 +29,7 @@ FrameCover frame_cover(const CompiledScene<Real>& scene, const FrameView& frame,
         cover.add(FrameCover::Outline::all, box_around(scene.hulls), extent, frame);
     else
         for (size_t i = 0; i < scene.hulls.size(); ++i) cover.add(i, scene.hulls[i], extent, frame);
+    if (scene.sky.kind != SkyKind::none) cover.add_all(FrameCover::Outline::all);  // it shows everywhere
     return cover;
 }
 

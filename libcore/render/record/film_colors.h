@@ -23,9 +23,13 @@ class FilmColors {
     /// float.
     float error(const PixelRecord& pixel, int c) const;
 
-    /// What samples that meet nothing added to a pixel, and what a file with a transparent background leaves out.
-    int64_t left_out(const PixelRadiance& pixel, int c) const {
-        return transparent_ ? (film_.samples - static_cast<int64_t>(pixel.hits)) * film_.background[c] : 0;
+    /// What samples that meet nothing added to a pixel, and what a file with a transparent background leaves out: the
+    /// layer of the background, or, of films without, as often what each adds.
+    int64_t left_out(size_t pixel, int c) const {
+        if (!transparent_) return 0;
+        const int path = film_.layers.plan.path;
+        if (path >= 0) return film_.layers.of(pixel)[path + 3 * static_cast<int>(PathLayer::background) + c];
+        return (film_.samples - static_cast<int64_t>(film_.pixels.radiance(pixel).hits)) * film_.background[c];
     }
 
   private:

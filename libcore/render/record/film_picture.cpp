@@ -69,7 +69,7 @@ std::vector<LayeredPicture::Channel> pixel_channels(const Film& film, const Outp
         to.push_back(film_channel(rgb[c], half, [&pixels, colors, c](size_t pixel) {
             const PixelRadiance& of = pixels.radiance(pixel);
             int64_t sums[3];
-            for (int k = 0; k < 3; ++k) sums[k] = of.radiance[k] - colors->left_out(of, k);
+            for (int k = 0; k < 3; ++k) sums[k] = of.radiance[k] - colors->left_out(pixel, k);
             return colors->radiance(sums, c);
         }));
     if (channels.transparent)
@@ -191,7 +191,7 @@ ColorPicture to_color(const Film& film, bool transparent) {
     for (size_t i = 0; i < film.pixels.size(); ++i) {
         const PixelRadiance& pixel = film.pixels.radiance(i);
         int64_t sums[3];
-        for (int c = 0; c < 3; ++c) sums[c] = pixel.radiance[c] - colors.left_out(pixel, c);
+        for (int c = 0; c < 3; ++c) sums[c] = pixel.radiance[c] - colors.left_out(i, c);
         picture.texels.emplace_back(colors.radiance(sums, 0), colors.radiance(sums, 1), colors.radiance(sums, 2));
         if (!transparent) continue;
         picture.alpha.push_back(static_cast<float>(pixel.hits) / static_cast<float>(film.samples));

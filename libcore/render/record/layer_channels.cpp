@@ -17,8 +17,7 @@ void add_sums(std::vector<LayeredPicture::Channel>& to, const Film& film, const 
     const auto sums = [&film, colors, place, background](size_t pixel, int c) {
         const int64_t* words = film.layers.of(pixel) + place;
         int64_t own[3];
-        for (int k = 0; k < 3; ++k)
-            own[k] = words[k] - (background ? colors->left_out(film.pixels.radiance(pixel), k) : 0);
+        for (int k = 0; k < 3; ++k) own[k] = words[k] - (background ? colors->left_out(pixel, k) : 0);
         return colors->radiance(own, c);
     };
     for (int c = 0; c < 3; ++c)

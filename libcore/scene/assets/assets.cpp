@@ -86,7 +86,10 @@ class AssetLoader {
         for (const ObjectDescription& object : scene_.objects)
             assets_.meshes.push_back(at_place(scene_, object.place, [&] { return mesh_of(object); }));
         assets_.pictures.resize(scene_.textures.size());
-        for (const ObjectDescription& object : scene_.objects) load_texture_of(object);
+        for (const ObjectDescription& object : scene_.objects)
+            if (object.material >= 0 && object.material < static_cast<int>(scene_.materials.size()))
+                load_texture(scene_.materials[static_cast<size_t>(object.material)].texture);
+        if (scene_.sky) load_texture(scene_.sky->texture);
         return std::move(assets_);
     }
 
@@ -120,10 +123,8 @@ class AssetLoader {
         return read;
     }
 
-    /// Reads the texture of the object's material, if it is the first to use that.
-    void load_texture_of(const ObjectDescription& object) {
-        if (object.material < 0 || object.material >= static_cast<int>(scene_.materials.size())) return;
-        const int number = scene_.materials[static_cast<size_t>(object.material)].texture;
+    /// Reads a texture that is used, unless it was read before.
+    void load_texture(int number) {
         if (number < 0 || number >= static_cast<int>(scene_.textures.size())) return;
         const auto index = static_cast<size_t>(number);
         const TextureDescription& texture = scene_.textures[index];

@@ -15,7 +15,7 @@ namespace cistula {
 
 struct SceneAssets {
     std::vector<std::shared_ptr<const MeshData>> meshes;        // of each object; null: it is no MeshObject
-    std::vector<std::shared_ptr<const ColorPicture>> pictures;  // of each texture; null: no object uses it
+    std::vector<std::shared_ptr<const ColorPicture>> pictures;  // of each texture; null: nothing uses it
     std::vector<std::string> warnings;                          // of textures
     std::vector<std::string> files;  // that the description and its meshes name; maps of meshes may be missing
 };

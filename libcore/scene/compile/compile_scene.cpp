@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -29,6 +32,7 @@
 #include "scene/compile/solids/compile_balls.h"
 #include "scene/compile/solids/compile_solids.h"
 #include "scene/compile/solids/placed_bodies.h"
+#include "scene/description/rotation.h"
 #include "scene/trees/tree_build.h"
 
 namespace cistula {
@@ -43,6 +47,30 @@ void return_free_memory([[maybe_unused]] uint32_t triangles) {
     if (triangles >= 100'000) malloc_trim(0);
 #endif
 }
+
+}  // namespace
+
+/// What takes long for a mesh and needs nothing of others.
+struct PreparedMesh {
+    ApexHeights heights;
+    Groups groups;
+    Tree tree;  // over groups
+    ApexFaults faults;
+    Box box;
+};
+
+/// What was prepared of meshes that do not change, and the vertices that contacts gave them.
+struct MeshCache {
+    using Key = std::tuple<size_t, uint32_t, std::string, size_t>;  // object, body, part, size of numbers
+    std::mutex mutex;
+    std::map<Key, std::pair<std::vector<dvec3>, PreparedMesh>> meshes;
+};
+
+std::shared_ptr<MeshCache> new_mesh_cache() {
+    return std::make_shared<MeshCache>();
+}
+
+namespace {
 
 constexpr size_t most_pairs = 10'000'000;
 constexpr uint32_t most_outlined = 16;  // triangles of a mesh that is outlined by its corners; larger ones by their box
@@ -206,7 +234,7 @@ class Compiler {
         });
     }
 
-    /// Finds solids that overlap no other. An optimization, skipped for scenes with very many pairs.
+    /// Finds solids inside of which nothing else is. An optimization, skipped for scenes with very many pairs.
     void find_isolated_solids() {
         const SceneView<Real> view = scene_.view();
         const size_t primitives = view.convex.size + view.clusters.size;
@@ -215,14 +243,34 @@ class Compiler {
         for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(primitive_box(view, p));
         for (uint32_t a = 0; a < view.convex.size; ++a) {
             bool isolated = true;
-            for (uint32_t b = 0; b < primitives && isolated; ++b) {
-                bool apart = a == b;
-                for (int k = 0; k < 3; ++k)
-                    apart |= boxes[a].high[k] < boxes[b].low[k] || boxes[b].high[k] < boxes[a].low[k];
-                isolated = apart;
-            }
+            for (uint32_t b = 0; b < primitives && isolated; ++b)
+                isolated = a == b || are_apart(boxes[a], boxes[b]) || is_outside_ball(view, a, b, boxes[b]);
             scene_.solids[view.convex[a]].isolated = isolated ? 1 : 0;
         }
+    }
+
+    static bool are_apart(const PaddedBox& a, const PaddedBox& b) {
+        bool apart = false;
+        for (int k = 0; k < 3; ++k) apart |= a.high[k] < b.low[k] || b.high[k] < a.low[k];
+        return apart;
+    }
+
+    /// Whether nothing of primitive b, in a box, is inside the convex solid a, which is a ball: b's box is outside, or
+    /// b is a ball that at most touches it (docs/rules.md, 14, line 9).
+    bool is_outside_ball(const SceneView<Real>& view, uint32_t a, uint32_t b, const PaddedBox& box) const {
+        const auto ball_of = [&](uint32_t p) -> const Ball<Real>* {
+            const Solid* solid = p < view.convex.size ? &view.solids[view.convex[p]] : nullptr;
+            return solid && is_ball(*solid) ? &view.balls[solid->first_slab] : nullptr;
+        };
+        const Ball<Real>* own = ball_of(a);
+        if (!own) return false;
+        const dvec3 center(own->center);
+        const double radius = own->radius;
+        if (const Ball<Real>* other = ball_of(b))
+            return length(dvec3(other->center) - center) >=
+                   radius + double(other->radius) - double(incidence<Real>) * double(view.extent);
+        return distance_to_box(Box{{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}},
+                               center) > radius;
     }
 
     /// Finds the smooth meshes of which anything else, or another part, may lie within a bulge.
@@ -238,21 +286,31 @@ class Compiler {
         });
     }
 
-    /// What takes long for a mesh and needs nothing of others.
-    struct PreparedMesh {
-        ApexHeights heights;
-        Groups groups;
-        Tree tree;  // over groups
-        ApexFaults faults;
-        Box box;
-    };
-
     NormalizedMesh placed_mesh(uint32_t number) const {
         return {source_.solids[number].mesh, normalization_, bodies_.contacts.solids[number].points,
                 sizeof(Real) == sizeof(float)};
     }
 
+    /// Prepares a mesh; one that does not change, once for all frames in which contacts move the same vertices.
     PreparedMesh prepare(uint32_t number) {
+        const SourceSolid& from = source_.solids[number];
+        const MovingScene* const moving = source_.moving.get();
+        if (!moving || moving->solids[from.object].empty()) return prepared_anew(number);
+        MeshCache& cache = *moving->meshes;
+        const MeshCache::Key key{from.object, from.body, from.name, sizeof(Real)};
+        const std::vector<dvec3>& points = bodies_.contacts.solids[number].points;
+        {
+            const std::lock_guard lock(cache.mutex);
+            const auto known = cache.meshes.find(key);
+            if (known != cache.meshes.end() && known->second.first == points) return known->second.second;
+        }
+        PreparedMesh prepared = prepared_anew(number);
+        const std::lock_guard lock(cache.mutex);
+        cache.meshes[key] = {points, prepared};
+        return prepared;
+    }
+
+    PreparedMesh prepared_anew(uint32_t number) {
         SourceSolid& from = source_.solids[number];
         const NormalizedMesh mesh = placed_mesh(number);
         PreparedMesh prepared;
@@ -467,8 +525,39 @@ class Compiler {
         hash_.add(description_.background);
         hash_.add(scale_.bound);
         hash_.add(static_cast<uint32_t>(scale_.exponent));
+        compile_sky(textures);
         scene_.textures = std::move(textures.textures);
         scene_.texels = std::move(textures.texels);
+    }
+
+    void compile_sky(const TextureSet& textures) {
+        if (!description_.sky) return;
+        const SkyDescription& sky = *description_.sky;
+        Sky& to = scene_.sky;
+        to.kind = sky.texture < 0 ? SkyKind::gradient : SkyKind::picture;
+        hash_.add(static_cast<uint32_t>(to.kind));
+        if (to.kind == SkyKind::gradient) {
+            to.axes[2] = normalized(sky.axis);
+            for (const SkyColor& stop : sky.stops)
+                scene_.sky_stops.push_back({sine_cosine_of_degrees(stop.degrees).cosine, scaled(stop.color)});
+        } else {
+            const Rotation rotation(sky.rotation);
+            for (int axis = 0; axis < 3; ++axis) {
+                dvec3 unit(0);
+                unit[axis] = 1;
+                to.axes[axis] = rotation(unit);
+            }
+            to.texture = static_cast<uint32_t>(textures.number[static_cast<size_t>(sky.texture)]);
+            to.scale = std::ldexp(sky.scale, -scale_.exponent);
+            hash_.add(to.texture);
+        }
+        for (const dvec3& axis : to.axes) hash_.add(axis);
+        hash_.add(to.scale);
+        for (const SkyStop& stop : scene_.sky_stops) hash_.add(stop.cosine), hash_.add(stop.color);
+        scene_.warnings.push_back(scene_error(description_, "/background",
+                                              "it is seen, mirrored and refracted, but lights nothing",
+                                              "`ambient` and lights do")
+                                      .what());
     }
 
     void compile_lights() {

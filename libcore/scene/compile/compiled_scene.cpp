@@ -82,6 +82,8 @@ SceneView<Real> CompiledScene<Real>::view() const {
     v.tree_items = span_of(tree_items);
     v.visible_light_tree = span_of(visible_light_tree);
     v.light_groups = span_of(light_groups);
+    v.sky_stops = span_of(sky_stops);
+    v.sky = sky;
     v.background = background;
     v.bound = bound;
     v.largest_bound = largest_component(bound);
@@ -98,7 +100,7 @@ size_t CompiledScene<Real>::memory() const {
            bytes_of(plane_solids) + bytes_of(balls) + bytes_of(ball_planes) + bytes_of(clusters) + bytes_of(uvs) +
            bytes_of(normals) + bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(visible_lights) +
            bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
-           bytes_of(visible_light_tree) + bytes_of(light_groups);
+           bytes_of(visible_light_tree) + bytes_of(light_groups) + bytes_of(sky_stops);
 }
 
 template <class Real>

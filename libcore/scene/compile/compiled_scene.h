@@ -57,6 +57,8 @@ struct CompiledScene {
     std::vector<uint32_t> light_groups;  // of each of lights
     std::vector<Hull> hulls;             // around everything visible
     std::vector<ContactReach> reaches;   // of each solid
+    std::vector<SkyStop> sky_stops;
+    Sky sky;
     Vec3<Real> background, bound;
     Real extent = 1;
 

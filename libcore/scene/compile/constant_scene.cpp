@@ -37,6 +37,8 @@ bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantS
         to.transmitting_solids |= uint32_t(transmits(here, i)) << i;
     }
     to.plan.clear(to.convex.size, to.clusters.size);
+    to.sky_stops = there.sky_stops;
+    to.sky = here.sky;
     to.background = here.background;
     to.bound = here.bound;
     to.largest_bound = here.largest_bound;

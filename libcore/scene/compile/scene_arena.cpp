@@ -34,6 +34,7 @@ void for_each_span(SceneView<Real>& view, const Visit& visit) {
     visit(view.tree_items);
     visit(view.visible_light_tree);
     visit(view.light_groups);
+    visit(view.sky_stops);
 }
 
 }  // namespace

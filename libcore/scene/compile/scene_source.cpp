@@ -93,6 +93,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
         SourceSolid solid;
         solid.name = groups.size() == 1 ? object.name : given_name(object.name, object.place) + "/" + part.name;
         solid.place = object.place;
+        solid.object = static_cast<size_t>(&object - scene.objects.data());
         solid.mesh = std::move(part.mesh);
         solid.keep_triangles = mesh.keep_triangles;
         solid.smooth = mesh.smooth;
@@ -135,8 +136,26 @@ std::string name_of(const SourceSolid& solid) {
 
 namespace {
 
-/// A scene whose solids are not placed in its frame yet.
-SceneSource gathered_parts(const SceneDescription& description, SceneAssets assets, StopSignal stop) {
+/// A solid that is a mesh, with this for its triangles; their edges are found again where they are needed.
+SourceSolid with_mesh(const SourceSolid& solid, MeshSource mesh) {
+    SourceSolid made;
+    made.name = solid.name;
+    made.place = solid.place;
+    made.material = solid.material;
+    made.mesh = std::move(mesh);
+    made.closed = solid.closed;
+    made.thickness = solid.thickness;
+    made.body = solid.body;
+    made.keep_triangles = solid.keep_triangles;
+    made.object = solid.object;
+    made.normals = solid.normals;
+    made.in_parts = solid.in_parts;
+    return made;
+}
+
+/// A scene whose solids are not placed in its frame yet. `known`: has those that do not change; null: none.
+SceneSource gathered_parts(const SceneDescription& description, SceneAssets assets, StopSignal stop,
+                           const MovingScene* known = nullptr) {
     SceneSource source;
     source.description = &description;
     source.stop = stop;
@@ -157,11 +176,16 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
     for (const MaterialDescription& material : description.materials) material_names[material.name];
     size_t lights = description.lights.size();
     for (const ObjectDescription& object : description.objects) {
+        const auto number = static_cast<size_t>(&object - description.objects.data());
+        if (known && !known->solids[number].empty()) {
+            for (const SourceSolid& solid : known->solids[number])
+                source.solids.push_back(with_mesh(solid, solid.mesh.borrowed()));
+            continue;
+        }
         if (object.material >= static_cast<int>(description.materials.size()))
             throw scene_error(description, object.place, "names a material that does not exist");
         if (const auto* mesh = std::get_if<MeshObject>(&object.shape)) {
-            std::shared_ptr<const MeshData>& data =
-                assets.meshes[static_cast<size_t>(&object - description.objects.data())];
+            std::shared_ptr<const MeshData>& data = assets.meshes[number];
             add_mesh(source, object, *mesh, *data, material_names);
             data.reset();
             continue;
@@ -171,6 +195,7 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
         SourceSolid solid;
         solid.name = object.name;
         solid.place = object.place;
+        solid.object = number;
         solid.material = static_cast<uint32_t>(object.material);
         if (const auto* polyhedron = std::get_if<SolidObject>(&object.shape)) {
             check_polyhedron(description, *polyhedron, object.place);
@@ -269,14 +294,26 @@ Box box_of_motion(const SceneDescription& description, const SceneAssets& assets
     return box;
 }
 
+/// The solids of each mesh that does not change, but for those that bring materials.
+std::vector<std::vector<SourceSolid>> still_meshes(const SceneDescription& description, const SceneSource& source) {
+    std::vector<std::vector<SourceSolid>> solids(description.objects.size());
+    const std::vector<size_t>& moving = description.motion->objects;
+    for (const SourceSolid& solid : source.solids)
+        if (solid.is_mesh() && description.objects[solid.object].material >= 0 &&
+            !std::binary_search(moving.begin(), moving.end(), solid.object))
+            solids[solid.object].push_back(with_mesh(solid, solid.mesh.copy()));
+    return solids;
+}
+
 /// `moving`: of a scene that changes, if it is known already.
 SceneSource gathered_scene(const SceneDescription& description, SceneAssets assets, StopSignal stop,
                            std::shared_ptr<const MovingScene> moving = nullptr) {
     const bool keeps_assets = description.motion && !moving;  // else they are freed as they are placed
-    SceneSource source = gathered_parts(description, keeps_assets ? assets : std::move(assets), stop);
+    SceneSource source = gathered_parts(description, keeps_assets ? assets : std::move(assets), stop, moving.get());
     if (keeps_assets) {
         const Box box = box_of_motion(description, assets, stop);
-        moving = std::make_shared<const MovingScene>(MovingScene{description, std::move(assets), box});
+        moving = std::make_shared<const MovingScene>(
+            MovingScene{description, std::move(assets), box, still_meshes(description, source)});
     }
     source.moving = std::move(moving);
     source.bodies = std::make_shared<const PlacedBodies>(source);

@@ -27,6 +27,7 @@ struct SourceSolid {
     double thickness = 0;         // of a closed mesh, in scene units: the least volume / area of its bodies
     uint32_t body = 0;            // of several solids that one mesh makes, from 0; they share its name
     bool keep_triangles = false;  // the mesh is not given by planes, even where it could be
+    size_t object = 0;            // whose it is, by number in the description
     Smoothing smooth;             // of the mesh, as described
     /// Unit normals at the corners of each of its triangles, outward, 0 where a triangle is flat; none: all are.
     std::vector<std::array<glm::dvec3, 3>> normals;
@@ -41,11 +42,16 @@ std::string name_of(const SourceSolid& solid);
 
 struct PlacedBodies;
 
+struct MeshCache;  // compile_scene.cpp
+std::shared_ptr<MeshCache> new_mesh_cache();
+
 /// What all frames of a scene that changes have in common.
 struct MovingScene {
     SceneDescription description;
     SceneAssets assets;
-    Box box;  // around what changes, in all frames, in scene units
+    Box box;                                               // around what changes, in all frames, in scene units
+    std::vector<std::vector<SourceSolid>> solids;          // of each mesh that does not change, for all frames
+    std::shared_ptr<MeshCache> meshes = new_mesh_cache();  // what compiling found of them
 };
 
 struct SceneSource {

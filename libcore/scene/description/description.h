@@ -164,6 +164,21 @@ struct FilmDescription {
     std::string output;              // the seed's pattern for output files; empty: none given
 };
 
+/// A color of a gradient, at an angle to its axis in degrees.
+struct SkyColor {
+    double degrees = 0;
+    glm::dvec3 color{0};
+};
+
+/// What is around a scene in place of a background of one color: a gradient, or a picture by longitude and latitude.
+struct SkyDescription {
+    glm::dvec3 axis{0, 0, 1};
+    std::vector<SkyColor> stops;  // of a gradient, by ascending angles; two of one angle are an edge
+    int texture = -1;             // of a picture: index into SceneDescription::textures
+    glm::dvec3 rotation{0};       // of a picture: degrees about x, then y, then z
+    double scale = 1;             // of a picture's texels
+};
+
 struct FrameOfReference {
     glm::dvec3 center{0};
     int scale = 0;                // coordinates are multiplied by 2^scale
@@ -187,6 +202,7 @@ struct SceneDescription {
     double cutoff = 0;
     std::optional<double> contact;  // faces that are no farther apart touch; none: 2^-20 of the scene's extent
     glm::dvec3 ambient{0.1}, background{0};
+    std::optional<SkyDescription> sky;  // in place of the background, which is then 0
     std::vector<TextureDescription> textures;
     std::vector<MaterialDescription> materials;
     std::vector<ObjectDescription> objects;  // in file order, which is the priority order of their media

@@ -42,6 +42,25 @@ struct MeshSource {
         uvs = owned_uvs;
         normals = owned_normals;
     }
+    /// These triangles, borrowed from this, which must outlive them.
+    MeshSource borrowed() const {
+        MeshSource mesh;
+        mesh.vertices = vertices;
+        mesh.triangles = triangles;
+        mesh.uvs = uvs;
+        mesh.doubled_polygons = doubled_polygons;
+        mesh.rounding = rounding;
+        return mesh;
+    }
+    /// These triangles, owned.
+    MeshSource copy() const {
+        MeshSource mesh = borrowed();
+        mesh.owned_vertices.assign(vertices.begin(), vertices.end());
+        mesh.owned_triangles.assign(triangles.begin(), triangles.end());
+        mesh.owned_uvs.assign(uvs.begin(), uvs.end());
+        mesh.view_owned();
+        return mesh;
+    }
 };
 
 inline constexpr uint32_t no_vertex = 0xffffffffu;

@@ -47,6 +47,7 @@ std::optional<SceneDescription> without_effect(const SceneDescription& scene, ui
     if ((effect & (effect_opaque_shadows | effect_transparent_shadows)) != 0) return std::nullopt;
     SceneDescription less = scene;
     less.motion = nullptr;  // which goes by the numbers of all objects
+    if (effect == effect_sky) less.sky.reset();
     for (MaterialDescription& material : less.materials) take_from(material, effect);
     for (LightDescription& light : less.lights) take_from_light(light, effect);
     for (ObjectDescription& object : less.objects) {

@@ -51,6 +51,11 @@ class JsonValue {
     /// JSON pointer of a key of this object, present or not; a very long key is cut, since the pointer is for messages.
     std::string place_of(std::string_view key) const;
 
+    /// Whether the value changes over time by keys, and may.
+    bool is_keyed() const {
+        return clock_ && json_->is_object() && (json_->contains("keys") || json_->contains("interpolation"));
+    }
+
     /// Throws unless this object's comment, if it has one, is a string or an array of strings.
     void check_comment() const;
 
@@ -81,9 +86,6 @@ class JsonValue {
     glm::dvec2 pair(const Key& key) const;
 
   private:
-    bool is_keyed() const {
-        return clock_ && json_->is_object() && (json_->contains("keys") || json_->contains("interpolation"));
-    }
     /// The value with keys at the clock's frame; read(value, key) reads that of a key.
     template <class Read>
     glm::dvec3 keyed(const Key& key, const Read& read) const;

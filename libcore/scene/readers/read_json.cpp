@@ -90,6 +90,15 @@ CameraDescription read_camera(const JsonValue& value) {
     return camera;
 }
 
+/// Throws for an object that lacks what tells its form, most likely because that is misspelled.
+[[noreturn]] void fail_without_form(const JsonValue& value, const std::vector<std::string_view>& known,
+                                    const char* problem) {
+    for (const auto& member : value.json().items())
+        if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
+            value.fail_at(value.place_of(member.key()), "unknown key", suggestion(member.key(), known, "keys"));
+    value.fail(problem);
+}
+
 /// What lies beyond a texture's edges: one word for both axes, or one for each.
 void read_wrap(JsonObject& keys, TextureDescription& texture) {
     const Key word{"wrap", KeyType::choice, {}, {}, false, texture_file_keys.find("wrap")->choices};
@@ -108,14 +117,9 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
     const bool has_file = is_object && value.json().contains("file");
     const bool has_checker = is_object && value.json().contains("checker");
     if (has_file && has_checker) value.fail("expected one of 'file' and 'checker', found both");
-    if (is_object && !has_file && !has_checker) {
-        const std::vector<std::string_view> known = {"file", "filter",     "checker", "repeat",
-                                                     "wrap", "colorspace", "strict"};
-        for (const auto& member : value.json().items())
-            if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
-                value.fail_at(value.place_of(member.key()), "unknown key", suggestion(member.key(), known, "keys"));
-        value.fail("expected one of the keys 'file' and 'checker'");
-    }
+    if (is_object && !has_file && !has_checker)
+        fail_without_form(value, {"file", "filter", "checker", "repeat", "wrap", "colorspace", "strict"},
+                          "expected one of the keys 'file' and 'checker'");
     if (!has_checker) {
         JsonObject keys(value, texture_file_keys);
         keys.read("file", texture.file);
@@ -139,6 +143,57 @@ TextureDescription read_texture(const JsonValue& value, const std::string& base_
     read_wrap(keys, texture);
     keys.finish();
     return texture;
+}
+
+std::vector<SkyColor> read_stops(const JsonValue& value) {
+    static constexpr Key angle{"degrees", KeyType::number, {0, 180}, {}, false, {}};
+    std::vector<SkyColor> stops;
+    const size_t count = value.array_size(1, "an array of stops [degrees, color]");
+    for (size_t i = 0; i < count; ++i) {
+        const JsonValue one = value.item(i);
+        if (one.array_size(0, "a stop [degrees, color]") != 2) one.fail_expected("a stop [degrees, color]");
+        stops.push_back({one.item(0).number(angle), one.item(1).color(*material_keys.find("color"))});
+        if (i > 0 && stops[i].degrees < stops[i - 1].degrees)
+            one.item(0).fail(fmt::format("{} degrees stand after {}", number_text(stops[i].degrees),
+                                         number_text(stops[i - 1].degrees)),
+                             "the angles of stops ascend; two of one angle are an edge");
+        if (i > 1 && stops[i].degrees == stops[i - 2].degrees)
+            one.item(0).fail(fmt::format("a third stop at {} degrees", number_text(stops[i].degrees)),
+                             "two of one angle are an edge");
+    }
+    return stops;
+}
+
+/// Reads what is around: a color, a gradient, or a picture, which is the texture without a name.
+void read_background(const JsonValue& value, const std::string& base_dir, SceneDescription& scene) {
+    if (!value.json().is_object() || value.is_keyed()) {
+        scene.background = value.color(*scene_keys.find("background"));
+        return;
+    }
+    const bool has_file = value.json().contains("file");
+    const bool has_stops = value.json().contains("stops");
+    if (has_file == has_stops)
+        fail_without_form(value, {"file", "rotate", "scale", "axis", "stops"},
+                          "expected a color, or one of the keys 'stops' (a gradient) and 'file' (a picture)");
+    SkyDescription sky;
+    JsonObject keys(value, has_file ? sky_picture_keys : sky_gradient_keys);
+    if (has_file) {
+        TextureDescription texture;
+        keys.read("file", texture.file);
+        texture.file = file_beside_scene(texture.file, base_dir);
+        texture.place = value.place();
+        texture.wrap[1] = TextureWrap::clamp;
+        keys.read("rotate", sky.rotation);
+        keys.read("scale", sky.scale);
+        sky.texture = scene.sky ? scene.sky->texture : static_cast<int>(scene.textures.size());
+        if (!scene.sky) scene.textures.push_back(std::move(texture));
+    } else {
+        keys.read("axis", sky.axis);
+        if (sky.axis == glm::dvec3{0}) keys.fail("axis", "expected a direction other than [0, 0, 0]");
+        sky.stops = read_stops(keys.at("stops"));
+    }
+    keys.finish();
+    scene.sky = std::move(sky);
 }
 
 MaterialDescription read_material(const JsonValue& value, const NameIndices& textures) {
@@ -245,8 +300,7 @@ struct JsonScene {
     }
     void read_around(SceneDescription& scene, KeyClock& clock) const {
         if (json.contains("ambient")) scene.ambient = part("ambient", clock).color(*scene_keys.find("ambient"));
-        if (json.contains("background"))
-            scene.background = part("background", clock).color(*scene_keys.find("background"));
+        if (json.contains("background")) read_background(part("background", clock), base_dir, scene);
     }
     MaterialDescription material(const std::string& name, const JsonValue& value) const {
         MaterialDescription material = read_material(value, textures);
@@ -329,8 +383,6 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
     keys.read("depth", scene.depth);
     keys.read("cutoff", scene.cutoff);
     keys.read("contact", scene.contact);
-    const bool has_ambient = keys.has("ambient");
-    if (keys.has("background") || has_ambient) file->read_around(scene, clock);
     if (keys.has("film")) scene.film = read_film(keys.at("film"));
     if (keys.has("camera")) {
         KeyClock of_camera;
@@ -348,6 +400,8 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
             scene.textures.push_back(read_texture(texture, base_dir));
             scene.textures.back().name = name;
         });
+    const bool has_ambient = keys.has("ambient");
+    if (keys.has("background") || has_ambient) file->read_around(scene, clock);
     if (keys.has("materials"))
         for_each_name(keys.at("materials").over_time(clock), "material",
                       [&](const std::string& name, const JsonValue& material) {

@@ -140,6 +140,17 @@ constexpr Key texture_checker_list[] = {
     wrap,
 };
 
+constexpr Key sky_gradient_list[] = {
+    point("axis", anywhere, "[0, 0, 1]"),
+    other("stops", required),
+};
+
+constexpr Key sky_picture_list[] = {
+    text("file", required),
+    point("rotate", angle, "[0, 0, 0]"),
+    number("scale", not_negative, "1"),
+};
+
 constexpr Key material_list[] = {
     color("color", not_negative, "0.8"),   text("texture"),
     number("ambient", not_negative, "1"),  number("diffuse", not_negative, "1"),
@@ -264,6 +275,8 @@ constexpr KeyTable path_keys{"path", path_list};
 constexpr KeyTable cylindrical_keys{"cylindrical", cylindrical_list};
 constexpr KeyTable texture_file_keys{"texture_file", texture_file_list};
 constexpr KeyTable texture_checker_keys{"texture_checker", texture_checker_list};
+constexpr KeyTable sky_gradient_keys{"sky_gradient", sky_gradient_list};
+constexpr KeyTable sky_picture_keys{"sky_picture", sky_picture_list};
 constexpr KeyTable material_keys{"material", material_list};
 constexpr KeyTable solid_keys{"solid", solid_list};
 constexpr KeyTable sphere_keys{"sphere", sphere_list};
@@ -280,12 +293,28 @@ constexpr KeyTable frame_keys{"frame", frame_list};
 constexpr KeyTable keyed_keys{"keyed", keyed_list};
 
 std::span<const KeyTable* const> all_key_tables() {
-    static constexpr const KeyTable* tables[] = {
-        &scene_keys,       &film_keys,         &camera_keys,          &path_keys,
-        &cylindrical_keys, &texture_file_keys, &texture_checker_keys, &material_keys,
-        &solid_keys,       &box_keys,          &convex_keys,          &prism_keys,
-        &edge_lights_keys, &quad_keys,         &triangles_keys,       &triangle_list_keys,
-        &mesh_keys,        &light_keys,        &frame_keys,           &keyed_keys};
+    static constexpr const KeyTable* tables[] = {&scene_keys,
+                                                 &film_keys,
+                                                 &camera_keys,
+                                                 &path_keys,
+                                                 &cylindrical_keys,
+                                                 &texture_file_keys,
+                                                 &texture_checker_keys,
+                                                 &sky_gradient_keys,
+                                                 &sky_picture_keys,
+                                                 &material_keys,
+                                                 &solid_keys,
+                                                 &box_keys,
+                                                 &convex_keys,
+                                                 &prism_keys,
+                                                 &edge_lights_keys,
+                                                 &quad_keys,
+                                                 &triangles_keys,
+                                                 &triangle_list_keys,
+                                                 &mesh_keys,
+                                                 &light_keys,
+                                                 &frame_keys,
+                                                 &keyed_keys};
     return tables;
 }
 

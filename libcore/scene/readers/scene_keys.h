@@ -56,8 +56,9 @@ struct KeyTable {
 };
 
 extern const KeyTable scene_keys, film_keys, camera_keys, path_keys, cylindrical_keys, texture_file_keys,
-    texture_checker_keys, material_keys, solid_keys, sphere_keys, box_keys, convex_keys, prism_keys, edge_lights_keys,
-    quad_keys, triangles_keys, triangle_list_keys, mesh_keys, light_keys, frame_keys, keyed_keys;
+    texture_checker_keys, sky_gradient_keys, sky_picture_keys, material_keys, solid_keys, sphere_keys, box_keys,
+    convex_keys, prism_keys, edge_lights_keys, quad_keys, triangles_keys, triangle_list_keys, mesh_keys, light_keys,
+    frame_keys, keyed_keys;
 
 /// Calls visit(key, field) for each field of a material that stands under a key of its own, in the order of these.
 template <class Material, class Visit>

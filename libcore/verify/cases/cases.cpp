@@ -14,8 +14,11 @@ void add_pieces(Cases& cases);
 void add_refraction(Cases& cases);
 void add_shadows(Cases& cases);
 void add_size(Cases& cases);
+void add_sky(Cases& cases);
+void add_smooth(Cases& cases);
 void add_smooth(Cases& cases);
 void add_sums(Cases& cases);
+void add_time(Cases& cases);
 
 const std::vector<Case>& all_cases() {
     static const std::vector<Case> all = [] {
@@ -36,8 +39,11 @@ const std::vector<Case>& all_cases() {
         add("refraction/", add_refraction);
         add("shadows/", add_shadows);
         add("size/", add_size);
+        add("sky/", add_sky);
+        add("smooth/", add_smooth);
         add("smooth/", add_smooth);
         add("sums/", add_sums);
+        add("time/", add_time);
         return cases.all;
     }();
     return all;

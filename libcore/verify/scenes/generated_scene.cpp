@@ -87,6 +87,9 @@ class Maker : Part {
         }
         scene_.ambient = 0.6 * random_.color();
         if (random_.chance(0.88)) scene_.background = 0.7 * random_.color();
+        const dvec3& around = scene_.background;
+        if (around.x > around.y && around.x > around.z)  // a third of these, without another draw
+            scene_.sky = SkyDescription{.axis = around, .stops = {{20, around}, {80, 0.5 * around}, {80, dvec3(0.1)}}};
         if (count > 0 && random_.chance(0.15)) scene_.ambient = dvec3(0);
     }
 

@@ -93,12 +93,23 @@ void limit_glow(const SceneSource& source, NormalizedLight& light, double limit,
     if (warnings.empty() || warnings.back() != warning) warnings.push_back(warning);
 }
 
+/// The brightest that a ray may see that meets nothing.
+dvec3 brightest_around(const SceneDescription& scene, const TextureSet& textures) {
+    if (!scene.sky) return scene.background;
+    if (scene.sky->texture >= 0)
+        return scene.sky->scale *
+               textures.largest[static_cast<size_t>(textures.number[static_cast<size_t>(scene.sky->texture)])];
+    dvec3 brightest{0};
+    for (const SkyColor& stop : scene.sky->stops) brightest = largest_of(brightest, stop.color);
+    return brightest;
+}
+
 }  // namespace
 
 dvec3 radiance_bound(const SceneSource& source, const TextureSet& textures, const SolidPlaces& solids,
                      double unit_length, std::vector<NormalizedLight>& lights, std::vector<std::string>& warnings) {
     const SceneDescription& scene = *source.description;
-    dvec3 bound = scene.background, lit = scene.background, constant{0};
+    dvec3 bound = brightest_around(scene, textures), lit = bound, constant{0};
     for (const NormalizedLight& light : lights)
         if (!light.falloff) constant += light.color;
     size_t brightest = 0;

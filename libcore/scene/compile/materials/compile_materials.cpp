@@ -78,13 +78,14 @@ TextureSet join_textures(SceneSource& source) {
     TextureSet set;
     set.number.assign(source.pictures.size(), -1);
     std::vector<std::shared_ptr<const ColorPicture>> pictures;
-    for (const SourceSolid& solid : source.solids) {
-        const int number = source.materials[solid.material].texture;
-        if (number < 0 || set.number[static_cast<size_t>(number)] >= 0) continue;
+    const auto add = [&](int number) {
+        if (number < 0 || set.number[static_cast<size_t>(number)] >= 0) return;
         pictures.push_back(std::move(source.pictures[static_cast<size_t>(number)]));
         set.number[static_cast<size_t>(number)] = static_cast<int>(set.textures.size());
         append_texture(set, source.description->textures[static_cast<size_t>(number)], *pictures.back());
-    }
+    };
+    for (const SourceSolid& solid : source.solids) add(source.materials[solid.material].texture);
+    if (source.description->sky) add(source.description->sky->texture);
     join_texels(pictures, set);
     return set;
 }

@@ -15,9 +15,9 @@ struct TextureSet {
     std::vector<Texture> textures;
     std::vector<Vec3<float>> texels;
     std::vector<glm::dvec3> largest;  // largest texel of each texture, per channel
-    std::vector<int> number;          // by index in the description; -1: no object uses it
+    std::vector<int> number;          // by index in the description; -1: nothing uses it
 };
-/// Joins the pictures of the textures that objects use, and takes them from the source.
+/// Joins the pictures of the textures that objects and the sky use, and takes them from the source.
 TextureSet join_textures(SceneSource& source);
 
 /// A material for the shading code. `ambient` is scaled like all radiances; `texture` is an index in the compiled

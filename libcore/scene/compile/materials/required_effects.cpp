@@ -230,6 +230,11 @@ std::vector<EffectReason> explain_effects(const SceneDescription& scene, const s
     for (const LightRow& row : light_rows) put(row.effect, row.premise, cause(row, lights), row.otherwise);
     put(effect_lights_on_faces, Premise::shown_light, light_on_face, "no light with a color lies on a face or edge");
     put(effect_contacts, Premise::none, contact, "no faces of two objects lie in one plane");
+    put(effect_sky, Premise::none,
+        !scene.sky               ? ""
+        : scene.sky->texture < 0 ? "the background is a gradient"
+                                 : "the background is a picture",
+        "the background has one color");
     return reasons;
 }
 

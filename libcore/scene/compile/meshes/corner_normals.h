@@ -1,4 +1,4 @@
-// Normals at the corners of smooth meshes (docs/rules.md, 16). Private to libcore/scene.
+// Normals at the corners of smooth meshes (docs/rules.md, 17). Private to libcore/scene.
 #pragma once
 
 #include <span>

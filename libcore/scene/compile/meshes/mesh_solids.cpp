@@ -212,6 +212,7 @@ void add_mesh_solids(SceneSource& source, SourceSolid solid, MeshPieces pieces) 
         SourceSolid& own = source.solids.emplace_back();
         own.name = solid.name;
         own.place = solid.place;
+        own.object = solid.object;
         own.material = solid.material;
         own.mesh = part_of(solid.mesh, triangles[body]);
         own.thickness = pieces.thickness[body];

@@ -420,6 +420,10 @@ void brighten(SceneDescription& scene, int light, int color) {
     }
     scene.ambient *= l;
     scene.background *= s;
+    if (scene.sky) {
+        scene.sky->scale *= s;
+        for (SkyColor& stop : scene.sky->stops) stop.color *= s;
+    }
     scene.cutoff *= s;
     if (scene.frame && scene.frame->bound) *scene.frame->bound *= s;
 }
