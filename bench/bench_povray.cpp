@@ -160,7 +160,7 @@ std::filesystem::path write_sky_scene(const std::filesystem::path& folder) {
     "floor": {"color": 1, "texture": "checker", "diffuse": 0.8, "specular": 0},
     "paint": {"color": [0.8, 0.3, 0.2], "diffuse": 0.7, "specular": 0.5, "exponent": 40},
     "mirror": {"color": [0.7, 0.7, 0.6], "diffuse": 0.3, "specular": 0.4, "exponent": 60, "reflection": 0.6},
-    "glass": {"color": 1, "specular": 0, "transmission": 1, "fresnel": true, "index": 1.5, "absorption": [0.1, 0.3, 0.2]}},
+    "glass": {"color": 1, "specular": 0, "transmission": 1, "fresnel": true, "index": 1.5}},
 "objects": [
 {"quad": [[-6, -6, 0], [6, -6, 0], [6, 6, 0], [-6, 6, 0]], "material": "floor"},
 {"solid": "sphere", "center": [-2.4, 0.4, 1], "radius": 1, "material": "mirror"},
@@ -173,12 +173,14 @@ std::filesystem::path write_sky_scene(const std::filesystem::path& folder) {
     return path;
 }
 
-/// A file of mesh.json's scene, without what POV-Ray lacks: colored highlights and our textures.
+/// A file of mesh.json's scene, without what POV-Ray lacks or does otherwise: colored highlights, our textures,
+/// normals.
 std::filesystem::path write_mesh_scene(const std::filesystem::path& folder) {
     nlohmann::json scene = nlohmann::json::parse(std::ifstream(scene_file("mesh.json")));
     scene.erase("$schema");
     scene["materials"]["copper"].erase("specular_color");
     scene["textures"] = {{"marble", {{"checker", {0.8, 0.3}}, {"repeat", {4, 4}}}}};
+    scene["objects"][0]["smooth"] = false;
     scene["objects"][0]["mesh"] = std::filesystem::absolute(scene_file("knot.ply")).string();
     const std::filesystem::path path = folder / "knot_between_mirrors.json";
     write_file_atomically(path.string(), scene.dump(2));

@@ -48,11 +48,11 @@ void set_ray(RTCRay& out, const Ray<Real>& ray, float near_t, float far_t) {
     out.flags = 0;
 }
 
-/// Traverses the tree: on_intersect is called for primitives that the ray may meet after ray.after.
+/// Traverses the tree: on_intersect is called for primitives that the ray may meet after ray.after, up to far_t.
 template <class Real>
-void traverse_closest(RTCScene tree, EmbreeContext& context, const Ray<Real>& ray) {
+void traverse_closest(RTCScene tree, EmbreeContext& context, const Ray<Real>& ray, float far_t) {
     RTCRayHit rayhit;
-    set_ray(rayhit.ray, ray, tree_near(ray.after.t), RealTraits<float>::infinity);
+    set_ray(rayhit.ray, ray, tree_near(ray.after.t), far_t);
     rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     embree_intersect(tree, context, rayhit);
 }
@@ -81,7 +81,8 @@ struct EmbreeIntersector {
         query.scene = &scene;
         query.ray = &ray;
         query.triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
-        traverse_closest(tree, query.context, ray);
+        closest_disk<Effects<all_effects>>(scene, true, ray, query.best);
+        traverse_closest(tree, query.context, ray, tree_far(query.best.t));
         return query.best;
     }
 

@@ -30,8 +30,9 @@ class BranchReader {
             branch.end = BranchEnd::pruned;
             branch.ledger = less(trace.end.pruned, trace.begin.pruned);
         } else {
-            Replay replay{trace,   branch,       tree,
-                          waiting, trace.weight, trace.start - max_or_second(trace.looks[0].ray.after.t, Real(0))};
+            Replay replay{trace, branch, tree, waiting, trace.weight, 0};
+            const Real from = begin_of(trace.looks[0].ray);
+            replay.ahead = (from < Real(0) ? 0 : trace.start) - double(from);
             read_way(replay);
         }
         tree.branches[node] = std::move(branch);
@@ -57,7 +58,7 @@ class BranchReader {
     void read_way(Replay& replay) const {
         const auto& looks = replay.trace.looks;
         Ray<Real> ray = looks[0].ray;
-        replay.branch.origin = to_scene(along(ray.origin, max_or_second(ray.after.t, Real(0)), ray.direction));
+        replay.branch.origin = to_scene(along(ray.origin, begin_of(ray), ray.direction));
         replay.branch.direction = Vec3<double>(ray.direction);
         Absorption<true> absorption;
         absorption.begin(scene_, ray.media, ray.after.t);
@@ -259,6 +260,8 @@ class BranchReader {
             ShadowSum<E> sum;
             if (scene_.solids[solid].kind == SolidKind::convex)
                 shadow_convex<Real, E>(scene_, solid, shadow, sum);
+            else if (is_disk(scene_.solids[solid]))
+                sum.cross(scene_.materials[scene_.solids[solid].material]);
             else
                 shadow_cluster<Real, E>(scene_, slot / cluster_lanes, shadow, triangle_ray, sum);
             bool takes = sum.opaque != 0;
@@ -284,9 +287,9 @@ class BranchReader {
     void fill(const Replay& replay, FaceMet& face, uint64_t key, Real t) const {
         const Solid& solid = scene_.solids[key_solid(key)];
         face.solid = key_solid(key);
-        face.triangle = solid.kind != SolidKind::convex;
-        face.round = is_ball(solid);
-        face.face = key_face(key) - (face.triangle ? solid.first_triangle : 0);
+        face.triangle = solid.kind != SolidKind::convex && !is_disk(solid);
+        face.round = is_ball(solid) || is_disk(solid);
+        face.face = key_face(key) - (solid.kind != SolidKind::convex ? solid.first_triangle : 0);
         face.crossing = key_kind(key);
         face.distance = length_of(replay, t);
     }

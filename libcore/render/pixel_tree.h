@@ -25,7 +25,7 @@ struct FaceMet {
     uint32_t solid = 0;
     uint32_t face = 0;      // face of a convex solid, or number of the triangle in its object
     bool triangle = false;  // `face` is a triangle
-    bool round = false;     // the solid is a sphere, which has no faces
+    bool round = false;     // the solid is a sphere, a disk or a plane, which has no faces
     CrossingKind crossing = CrossingKind::enter;
     double distance = 0;  // from the start of the branch
 };

@@ -55,6 +55,7 @@ class SceneDump {
         const EdgeLights& e = s.edge_lights;
         line(" edge lights", e.count, e.color, e.glow, e.radius, e.visible, e.falloff);
     }
+    void write(const DiskObject& d) { line(" disk", d.center, d.normal, d.radius); }
     void write(const SphereObject& s) { line(" sphere", s.center, s.radius, s.rotation); }
     void write(const TrianglesObject& t) {
         for (const auto& vertex : t.vertices) line(" vertex", vertex);

@@ -169,8 +169,8 @@ TYPED_TEST(LanesTest, LossesAreThoseOfNumbersUpToWhereNothingPasses) {
 TYPED_TEST(LanesTest, EntriesOfTablesAndVectorsAreTakenByIndex) {
     using Real = typename TestFixture::Real;
     using Index = IndexOf<Real>;
-    SolidTable<TypeParam> table;
-    SolidTable<ScalarOf<Index>> integers;
+    LaneTable<TypeParam> table;
+    LaneTable<ScalarOf<Index>> integers;
     std::vector<TypeParam> vectors(3 * 16);  // as long as they are: nothing is read behind the last
     for (int i = 0; i < 16; ++i) {
         table.of[i] = this->number();

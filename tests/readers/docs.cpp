@@ -88,7 +88,7 @@ TEST(ScenePage, ExampleIsValidAndUsesEveryKey) {
     const size_t start = markdown.find(fence) + fence.size();
     const std::string example = markdown.substr(start, markdown.find("```", start) - start);
     const SceneDescription scene = read_scene_text(example, "docs/scene.md", "");
-    EXPECT_EQ(scene.objects.size(), 8u);
+    EXPECT_EQ(scene.objects.size(), 10u);
     std::set<std::string> used;
     const std::function<void(const Json&)> collect = [&](const Json& json) {
         for (const auto& item : json.items()) {
@@ -139,6 +139,7 @@ TEST(SceneDefaults, AreThoseOfTheTables) {
                                   "}, \"materials\": {\"m\": " + object(material_keys, "") + "}, \"objects\": [" +
                                   object(solid_keys, "\"solid\": \"cube\", \"material\": \"m\", " + edges) + ", " +
                                   object(sphere_keys, R"("solid": "sphere", "material": "m")") + ", " +
+                                  R"({"material": "m", "disk": )" + object(disk_shape_keys, "") + "}, " +
                                   object(box_keys, R"("solid": "box", "size": [1, 2, 3], "material": "m")") + ", " +
                                   object(convex_keys, R"("solid": "convex", "points": [[0, 0, 0], [1, 0, 0], [0, 1, 0],
                                                          [0, 0, 1]], "material": "m")") +

@@ -44,6 +44,47 @@ TEST(SceneSpheres, HaveNoEdges) {
                         "/solid: unknown value 'spere'; did you mean 'sphere'?");
 }
 
+TEST(ScenePlanes, EveryNumberArrives) {
+    const auto plane = shape_of<DiskObject>(R"({"plane": [0, 3, 4, 10], "material": "tiles"})");
+    EXPECT_TRUE(plane.is_endless());
+    EXPECT_EQ(plane.normal, glm::dvec3(0, 3, 4));
+    EXPECT_NEAR(length(plane.center - glm::dvec3(0, 1.2, 1.6)), 0, 1e-15);
+    EXPECT_WRONG_OBJECT(R"({"plane": [0, 0, 0, 1], "material": "glass"})",
+                        "/plane: the normal is 0; give the direction across the plane");
+    EXPECT_WRONG_OBJECT(R"({"plane": [0, 0, 1], "material": "glass"})",
+                        "/plane: expected a plane [nx, ny, nz, d], found an array of 3");
+    EXPECT_WRONG_OBJECT(R"({"plane": [0, 0, 1, null], "material": "glass"})",
+                        "/plane/3: expected a number from -1e30 to 1e30, found null");
+    EXPECT_WRONG_OBJECT(R"({"plane": [0, 0, 1, 0], "radius": 2, "material": "glass"})",
+                        "/radius: unknown key; known keys: name, plane, material");
+}
+
+TEST(SceneDisks, EveryKeyArrives) {
+    const auto disk = shape_of<DiskObject>(
+        R"({"disk": {"center": [1, 2, 3], "normal": [4, 5, 6], "radius": 7}, "material": "tiles"})");
+    EXPECT_FALSE(disk.is_endless());
+    EXPECT_EQ(disk.center, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(disk.normal, glm::dvec3(4, 5, 6));
+    EXPECT_EQ(disk.radius, 7);
+    EXPECT_EQ(shape_of<DiskObject>(R"({"disk": {}, "material": "tiles"})").radius, 1);
+    EXPECT_WRONG_OBJECT(R"({"disk": {"normal": [0, 0, 0]}, "material": "glass"})",
+                        "/disk/normal: the normal is 0; give the direction across the disk");
+    EXPECT_WRONG_OBJECT(R"({"disk": {"radius": 0}, "material": "glass"})",
+                        "/disk/radius: expected a number from 1e-30 to 1e30, found 0");
+    EXPECT_WRONG_OBJECT(R"({"disk": {"radius": -1}, "material": "glass"})",
+                        "/disk/radius: expected a number from 1e-30 to 1e30, found -1");
+    EXPECT_WRONG_OBJECT(R"({"disk": 3, "material": "glass"})", "/disk: expected an object, found 3");
+}
+
+TEST(ScenePlanes, ChangeNumberByNumber) {
+    const SceneDescription scene = read_objects(
+        R"({"plane": [0, 0, 1, {"keys": [[0, 1], [2, 3]]}], "material": "glass"},
+           {"disk": {"radius": {"keys": [[0, 1], [2, 2]]}}, "material": "glass"})");
+    const SceneDescription later = at_frame(scene, 1);
+    EXPECT_EQ(std::get<DiskObject>(later.objects[0].shape).center, glm::dvec3(0, 0, 2));
+    EXPECT_EQ(std::get<DiskObject>(later.objects[1].shape).radius, 1.5);
+}
+
 TEST(SceneSolids, EveryKeyArrives) {
     const ObjectDescription object =
         read_objects(R"({"name": "gem", "solid": "icosahedron", "center": [1, 2, 3], "radius": 4,
@@ -336,10 +377,11 @@ TEST(SceneMeshes, EveryKeyArrives) {
 
 TEST(SceneObjects, HaveOneForm) {
     EXPECT_WRONG_OBJECT("3", ": expected an object, found 3");
-    EXPECT_WRONG_OBJECT("{}", ": expected one of the keys 'solid', 'quad', 'triangles' and 'mesh'");
+    EXPECT_WRONG_OBJECT("{}", ": expected one of the keys 'solid', 'plane', 'disk', 'quad', 'triangles' and 'mesh'");
     EXPECT_WRONG_OBJECT(R"({"soild": "cube", "material": "glass"})", "/soild: unknown key; did you mean 'solid'?");
     EXPECT_WRONG_OBJECT(R"({"solid": "cube", "mesh": "a.ply"})",
-                        ": expected one of 'solid', 'quad', 'triangles' and 'mesh', found both 'solid' and 'mesh'");
+                        ": expected one of 'solid', 'plane', 'disk', 'quad', 'triangles' and 'mesh', found both "
+                        "'solid' and 'mesh'");
     EXPECT_ERROR(read_objects(R"({"mesh": "a"}, {"mesh": "b"}, {"solid": "cube", "center": 0, "material": "glass"})"),
                  ExitCode::usage, "a.json: /objects/2/center: expected [x, y, z], each from -1e30 to 1e30, found 0");
 }

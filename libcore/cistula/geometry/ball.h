@@ -16,18 +16,24 @@ inline constexpr bool meets_balls = E::has(effect_spheres) && Media::contacts;
 template <class Real>
 struct BallChord {
     Real middle;            // t of the point nearest to the center
-    Real half;              // half the length; 0 for a line that misses
-    Real square;            // half^2; below 0 for a line that misses
+    Real square;            // of half the length; below 0 for a line that misses
     MaskOf<Real> is_ahead;  // whether the line is inside anywhere, and the center ahead
+
+    /// Half the length; 0 for a line that misses.
+    CISTULA_INLINE Real half() const { return square_root(max_or_second(square, Real(0))); }
 
     CISTULA_INLINE static BallChord of(const Ball<ScalarOf<Real>>& ball, const Vec3<Real>& origin,
                                        const Vec3<Real>& direction) {
-        const Vec3<Real> to_center = spread<Real>(ball.center) - origin;
+        return of(spread<Real>(ball.center), Real(ball.radius * ball.radius), origin, direction);
+    }
+    CISTULA_INLINE static BallChord of(const Vec3<Real>& center, const Real& radius_square, const Vec3<Real>& origin,
+                                       const Vec3<Real>& direction) {
+        const Vec3<Real> to_center = center - origin;
         const Real middle = dot(to_center, direction);
         const Vec3<Real> across = along(to_center, -middle, direction);
-        const Real square = Real(ball.radius * ball.radius) - dot(across, across);
+        const Real square = radius_square - dot(across, across);
         const MaskOf<Real> is_ahead = (middle > Real(0)) & (square > Real(0));
-        return {middle, square_root(max_or_second(square, Real(0))), square, is_ahead};
+        return {middle, square, is_ahead};
     }
 };
 
@@ -49,13 +55,14 @@ CISTULA_INLINE void closest_ball(const Scene& scene, uint32_t index, const Ray<R
                                  const MaskOf<Real>& inside, const MaskOf<Real>& outside, Hit<Real>& best) {
     const Ball<ScalarOf<Real>>& ball = scene.balls[scene.solids[index].first_slab];
     const BallChord<Real> chord = BallChord<Real>::of(ball, ray.origin, ray.direction);
-    const Real far = chord.middle + chord.half;
+    if (!any(inside | (outside & chord.is_ahead))) return;
+    const Real half = chord.half();
+    const Real far = chord.middle + half;
     const MaskOf<Real> enters = outside & chord.is_ahead & (far > ray.after.t);
-    if (!any(inside | enters)) return;
     const MaskOf<Real> on = starts_on_ball(scene, index, ball, ray);
     const Real leave = select(on, Real(2) * chord.middle, far);  // 2 b needs no root
     const Real least = max_or_second(ray.after.t, Real(0));
-    const Real t = max_or_second(select(inside, leave, chord.middle - chord.half), least);
+    const Real t = max_or_second(select(inside, leave, chord.middle - half), least);
     const MaskOf<Real> meets = (inside | (enters & !on)) & (t <= best.t) & (t < RealTraits<Real>::infinity);
     if (!any(meets)) return;
     const KeyOf<Real> key = select(inside, KeyFormat<Real>::make(CrossingKind::leave, index, 0),

@@ -220,9 +220,7 @@ CISTULA_NOINLINE MaskOf<Lanes<T, n>> find_ball_starts(const LaneScene<T>& scene,
     MaskOf<Real> found = false;
     const Vec3<Real> met = along(origin, hit.t, direction);
     for_each_value(active, key_solid(hit.key), [&](uint32_t index, const MaskOf<Real>& same) {
-        const Solid& solid = scene.solids[index];
-        if (!is_ball(solid)) return;
-        const Ball<T>& ball = scene.balls[solid.first_slab];
+        const Ball<T>& ball = scene.balls[scene.solids[index].first_slab];
         if (ball.near_meshes != 0) found |= same;
         for (uint32_t i = 0; i < ball.plane_count; ++i) {
             const BallPlane<T>& plane = scene.ball_planes[scene.near_planes[ball.first_plane + i]];
@@ -241,7 +239,11 @@ CISTULA_INLINE MaskOf<Lanes<T, n>> meshes_at_starts(const LaneScene<T>& scene,
                                                     const Hit<Lanes<T, n>>& hit, const MaskOf<Lanes<T, n>>& active) {
     MaskOf<Lanes<T, n>> found = false;
     if constexpr (E::has(effect_spheres))
-        if (scene.has_ball_starts) found = find_ball_starts(scene, ray.origin, ray.direction, hit, active);
+        if (scene.from_balls.any) {
+            const auto at_balls =
+                active & !is_kind(hit.key, CrossingKind::sheet) & among(scene.from_balls, key_solid(hit.key));
+            if (any(at_balls)) found = find_ball_starts(scene, ray.origin, ray.direction, hit, at_balls);
+        }
     if constexpr (E::has(effect_contacts))
         if (!scene.shared_planes.empty()) {
             if (scene.meshes.any)
@@ -315,12 +317,13 @@ CISTULA_INLINE void correct_starts(const LaneScene<T>& scene, const Ray<Lanes<T,
             leave_bodies(scene, number, up, same, around);
         });
         MaskOf<Real> single = false;  // lanes that are done by themselves
+        const Real factor = scene.disks.empty() ? Real(1) : far_factor(scene.extent, met);
         for_each_value(active, solids, [&](uint32_t index, const auto& same) {
             const Solid& solid = scene.solids[index];
             for (uint32_t i = 0; i < solid.near_count; ++i) {
                 const uint32_t number = scene.near_planes[solid.first_near + i];
                 const SharedPlane<T>& plane = scene.shared_planes[number];
-                const Real near(near_start<T> * plane.slack);
+                const Real near = Real(near_start<T>) * factor * Real(plane.slack);
                 const auto far =
                     (magnitude(distance_from(plane, start)) > near) & (magnitude(distance_from(plane, met)) > near);
                 single |= same & (own != Index(ScalarOf<Index>(number))) & !far;

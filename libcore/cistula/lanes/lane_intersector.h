@@ -1,6 +1,7 @@
 // The intersector of lanes: a loop over the primitives where they are few, else a tree over them.
 #pragma once
 
+#include "cistula/lanes/ball_lanes.h"
 #include "cistula/lanes/lane_shadow.h"
 #include "cistula/lanes/lane_tree.h"
 #include "cistula/lanes/lane_triangles.h"
@@ -26,8 +27,11 @@ struct LaneIntersector {
         best.t = select(traced, Real(RealTraits<Real>::infinity), Real(-1));
         Mask enclosed = false;  // by solids that nothing else comes near
         if constexpr (E::solids && E::has(effect_insides)) enclosed = traced & (ray.media.among(scene.isolated) != 0);
+        closest_disk<E>(scene, traced & !enclosed, ray, best);
         const Index beside = beside_start<E>(ray);
-        if (scene.tree.empty())
+        if constexpr (E::has(effect_spheres))
+            if (scene.columns.count > 0) closest_balls(scene.columns, ray, traced, traced & !enclosed, best);
+        if (scene.loops)
             closest_in_loop<E>(ray, traced, traced & !enclosed, beside, best);
         else
             closest_in_tree<E>(ray, enclosed, traced & !enclosed, beside, best);
@@ -42,8 +46,9 @@ struct LaneIntersector {
         assign_where(!(active & is_finite(shadow.ray)), sum.opaque, Index(7));
         if constexpr (E::has(effect_absorption))
             if (scene.meshes.any) shadow_start(scene, shadow, active, sum);
+        shadow_disks<E>(scene, shadow, !sum.is_blocked(), sum);
         const Index beside = beside_start<E>(shadow.ray);
-        if (scene.tree.empty())
+        if (scene.loops)
             shadow_in_loop(shadow, beside, sum);
         else
             shadow_in_tree(shadow, beside, sum);
@@ -106,6 +111,8 @@ struct LaneIntersector {
                                       const Index& beside, Hit<Real>& best) const {
         const IndexedSolid<ScalarOf<Real>>& next = scene.convex_copies[place];
         const uint32_t index = next.index;
+        if constexpr (E::has(effect_spheres))
+            if (scene.columns.count > 0 && is_ball(next.solid)) return;  // tested already
         Mask inside = false;
         if constexpr (E::has(effect_insides)) inside = active & ray.media.contains(index);
         if constexpr (E::has(effect_spheres))
@@ -147,7 +154,12 @@ struct LaneIntersector {
     CISTULA_INLINE void shadow_in_loop(const ShadowRay<Real, Media>& shadow, const Index& beside,
                                        ShadowSum<E, Real>& sum) const {
         Mask open = !sum.is_blocked();
+        uint32_t passed_by = 0;  // balls, a bit each of their solids
+        if constexpr (E::has(effect_spheres))
+            if (scene.columns.count > 0)
+                passed_by = scene.columns.solids ^ balls_on_lines(scene.columns, shadow.ray, open);
         for (uint32_t p = 0; E::solids && p < scene.convex_copies.size && any(open); ++p) {
+            if (passed_by != 0 && (passed_by >> scene.convex_copies[p].index & 1u) != 0) continue;
             shadow_solid(p, shadow, open, beside, sum);
             open = !sum.is_blocked();
         }

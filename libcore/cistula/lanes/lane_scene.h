@@ -1,6 +1,8 @@
 // The form of a scene that rays in lanes trace.
 #pragma once
 
+#include <algorithm>
+
 #include "cistula/geometry/ray.h"
 #include "cistula/model/constant_scene.h"
 
@@ -24,25 +26,53 @@ struct PlaneBodies {
 };
 
 /// What a solid is, in tables.
-enum SolidForm : int { form_triangles, form_slabs, form_ball };
+enum SolidForm : int { form_triangles, form_slabs, form_ball, form_disk };
 CISTULA_INLINE int form_of(const Solid& solid) {
-    return solid.kind != SolidKind::convex ? form_triangles : is_ball(solid) ? form_ball : form_slabs;
+    if (solid.kind != SolidKind::convex) return is_disk(solid) ? form_disk : form_triangles;
+    return is_ball(solid) ? form_ball : form_slabs;
 }
 
-/// A table with an entry for each of the first 16 solids: a register holds those of float, two or four those of double.
+/// What shading reads of a solid.
+struct SolidShading {
+    int32_t material, form, first_slab;
+};
+
+/// Balls in columns, so that they may be tested in lanes. Those from `count` on are missed by every line.
+template <class Real>
+struct BallColumns {
+    static constexpr uint32_t most = 32;
+    alignas(64) Real center[3][most] = {};
+    alignas(64) Real square[most];  // of the radius; -1: no ball
+    uint32_t count = 0;
+    uint32_t solids = 0;       // a bit each
+    uint8_t solid[most] = {};  // of each ball
+    uint8_t ball[most] = {};   // of each solid that is one
+
+    BallColumns() { std::fill(square, square + most, Real(-1)); }
+
+    void add(const Ball<Real>& added, uint32_t of_solid) {
+        for (int k = 0; k < 3; ++k) center[k][count] = added.center[k];
+        square[count] = added.radius * added.radius;
+        solid[count] = static_cast<uint8_t>(of_solid);
+        ball[of_solid] = static_cast<uint8_t>(count++);
+        solids |= 1u << of_solid;
+    }
+};
+
+/// A table of 16 entries: a register holds those of float, two or four those of double.
 template <class T>
-struct alignas(64) SolidTable {
+struct alignas(64) LaneTable {
     T of[16] = {};
 };
 
-/// What shading reads of the first solids and their materials.
+/// What shading reads of the first solids and of the first materials.
 template <class Real>
-struct SolidTables {
+struct ShadingTables {
     using Integer = std::conditional_t<sizeof(Real) == 4, int32_t, int64_t>;
-    SolidTable<Real> color[3], ambient[3], specular[3], filter[3], tint[3];
-    SolidTable<Real> diffuse, local, reflection, transmission;
-    SolidTable<Integer> integer_exponent, fresnel, material, texture;
-    SolidTable<Integer> first_slab, form;
+    LaneTable<Real> color[3], ambient[3], specular[3], filter[3], tint[3];
+    LaneTable<Real> diffuse, local, reflection, transmission;
+    LaneTable<Integer> integer_exponent, fresnel, texture;
+    LaneTable<Integer> material, form, first_slab;  // of solids
 };
 
 /// Some of the solids of a LaneScene: a bit each of the first 31, and 1 for each that is among them.
@@ -52,6 +82,12 @@ struct SolidSet {
     Span<uint32_t> each;
 
     CISTULA_INLINE bool has(uint32_t solid) const { return each[solid] != 0; }
+};
+
+/// An index of refraction, and the closed solids that have it.
+struct SolidsOfIndex {
+    double index;
+    SolidSet solids;
 };
 
 /// The closed solids of a LaneScene that contain a point: a bit each or, where the scene has too many for that
@@ -145,16 +181,20 @@ struct LaneScene : SceneView<Real> {
     SolidSet meshes, isolated;        // closed meshes; convex solids near which nothing else is
     SolidSet transparent, absorbing;  // closed solids that light passes; in which it is absorbed
     SolidSet clear, transmitting;     // of all solids, those of a clear material; of one that transmits
+    Span<SolidsOfIndex> indices;      // of closed solids, unless they are many
     SolidSet kin;                     // balls that coincide with others
+    SolidSet from_balls;              // balls from which new rays may know more than lanes hold
+    BallColumns<Real> columns;        // all balls, if they are tested before all else
     Span<uint32_t> numbers, places;   // the scene's own number of each solid, and the reverse
     Span<uint32_t> convex_places;     // of each convex solid, its place among them
+    Span<SolidShading> shading;       // of each solid
     Span<PlaneBodies> plane_bodies;   // of each of shared_planes, if InteriorSets are bits
     bool has_opaque_fresnel = false;  // whether any opaque material is
-    bool has_ball_starts = false;     // whether meshes or flat sheets are near balls
-    SolidTables<Real> tables;
+    bool loops = false;               // whether a loop over the primitives is quicker than the tree
+    ShadingTables<Real> tables;
 
     /// Whether lanes may give rays back, to be traced by themselves.
-    CISTULA_INLINE bool may_stray() const { return meshes.any || named || has_ball_starts || kin.any; }
+    CISTULA_INLINE bool may_stray() const { return meshes.any || named || from_balls.any || kin.any; }
 };
 
 }  // namespace cistula

@@ -22,7 +22,7 @@ struct LaneMaterial {
 
     /// Takes every part by take(part, its table, its value in a material).
     template <class E, class Take>
-    CISTULA_INLINE void take_all(const Take& take, const SolidTables<ScalarOf<Real>>& tables,
+    CISTULA_INLINE void take_all(const Take& take, const ShadingTables<ScalarOf<Real>>& tables,
                                  const Material<ScalarOf<Real>>& from) {
         take(ambient, tables.ambient, from.ambient);
         if constexpr (E::has(effect_specular)) {
@@ -76,12 +76,26 @@ CISTULA_INLINE Lanes<T, n> highlight(const LaneMaterial<Lanes<T, n>>& material, 
     return result;
 }
 
+/// Where solids are of a set; no solid is.
+template <class T, int n>
+CISTULA_INLINE typename Lanes<T, n>::Mask among(const SolidSet& set, const Lanes<T, n>& solid) {
+    if (!set.any) return false;
+    if (set.each.size <= 31) return ((Lanes<T, n>(1) << (solid & 31)) & Lanes<T, n>(T(set.bits))) != 0;
+    return entries_of(set.each, solid) != T(0);
+}
+
 /// The index of refraction around each ray.
 template <class Scene, class T, int n>
 CISTULA_INLINE Lanes<double, n> index_of(const Scene& scene, const LaneMedia<Lanes<T, n>>& media) {
     using Index = IndexOf<Lanes<T, n>>;
     Lanes<double, n> index(1.0);
     const Index medium = media.medium(scene);
+    if (!scene.indices.empty() && scene.solids.size <= 31) {
+        const auto is_inside = medium != Index(int(no_solid));
+        for (const SolidsOfIndex& one : scene.indices)
+            assign_where(widened(is_inside & among(one.solids, medium)), index, Lanes<double, n>(one.index));
+        return index;
+    }
     for_each_value(medium != Index(int(no_solid)), medium, [&](uint32_t solid, const auto& active) {
         assign_where(widened(active), index, Lanes<double, n>(scene.materials[scene.solids[solid].material].index));
     });
@@ -98,13 +112,6 @@ CISTULA_INLINE void take_opaque_index(const Scene& scene, const LaneMaterial<Lan
     });
 }
 
-/// Where solids are of a set; no solid is.
-template <class T, int n>
-CISTULA_INLINE typename Lanes<T, n>::Mask among(const SolidSet& set, const Lanes<T, n>& solid) {
-    if (!set.any) return false;
-    if (set.each.size <= 31) return ((Lanes<T, n>(1) << (solid & 31)) & Lanes<T, n>(T(set.bits))) != 0;
-    return entries_of(set.each, solid) != T(0);
-}
 /// Whether closed solids are opaque.
 template <class Real, class T, int n>
 CISTULA_INLINE auto is_opaque(const LaneScene<Real>& scene, const Lanes<T, n>& solid) {
@@ -131,18 +138,19 @@ CISTULA_INLINE Vec3<Lanes<T, n>> off_triangle(const Scene& scene, uint32_t slot,
     return select(outside, start(apex[1]), start(apex[0]));
 }
 
-/// texture_uv(), where `active` holds; else 0. `balls`: where balls are hit.
+/// texture_uv(), where `active` holds; else 0. `balls`, `disks`: where such are hit.
 template <class T, int n, class Scene>
 CISTULA_INLINE Vec2<Lanes<T, n>> texture_uv(const Scene& scene, const Hit<Lanes<T, n>>& hit,
                                             const Vec3<Lanes<T, n>>& normal, const MaskOf<Lanes<T, n>>& balls,
-                                            const MaskOf<Lanes<T, n>>& active) {
+                                            const MaskOf<Lanes<T, n>>& disks, const MaskOf<Lanes<T, n>>& active) {
     using Real = Lanes<T, n>;
-    Vec2<Real> uv(Real(0));
+    const MaskOf<Real> own = active & disks;
+    Vec2<Real> uv(select(own, hit.u, Real(0)), select(own, hit.v, Real(0)));
     for_each_lane(active & balls, [&](int lane) {
         const Vec2<T> one = texture_uv(scene, lane_of(hit, lane), lane_of(normal, lane));
         for (int k = 0; k < 2; ++k) uv[k].set(lane, one[k]);
     });
-    for_each_value(active & !balls, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+    for_each_value(active & !balls & !disks, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
         const auto& cluster = scene.clusters[slot / cluster_lanes];
         const Solid& solid = scene.solids[cluster.solid];
         const Vec2<T>* of =
@@ -186,21 +194,34 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
     s.material.number = s.material.integer_exponent = 0;  // read in all lanes
     Index first_slab = 0;
     Index form = form_triangles;
-    const auto take_all = [&](const Solid& solid, const auto& take) {
-        const Material<T>& material = scene.materials[solid.material];
-        s.material.template take_all<E>(take, scene.tables, material);
-        take(s.material.number, scene.tables.material, int(solid.material));
-        take(s.color, scene.tables.color, material.color);
+    if (scene.solids.size <= native::table_entries<sizeof(T)>) {
+        s.material.number = looked_up(scene.tables.material, solids);
         if constexpr (E::solids) {
-            take(form, scene.tables.form, form_of(solid));
-            take(first_slab, scene.tables.first_slab, int(solid.first_slab));
+            form = looked_up(scene.tables.form, solids);
+            first_slab = looked_up(scene.tables.first_slab, solids);
         }
+    } else {
+        LaneArray<Index> place(masked(active, solids)), material, forms, slabs;
+        for (int lane = 0; lane < n; ++lane) {
+            const SolidShading& own = scene.shading[uint32_t(place.of[lane])];
+            material.of[lane] = own.material;
+            forms.of[lane] = own.form;
+            slabs.of[lane] = own.first_slab;
+        }
+        s.material.number = masked(active, material.all());
+        form = forms.all();
+        first_slab = slabs.all();
+    }
+    const auto take_all = [&](const Material<T>& material, const auto& take) {
+        s.material.template take_all<E>(take, scene.tables, material);
+        take(s.color, scene.tables.color, material.color);
     };
-    if (scene.solids.size <= native::table_entries<sizeof(T)>)
-        take_all(scene.solids[0], [&](auto& to, const auto& table, const auto&) { to = looked_up(table, solids); });
+    if (scene.materials.size <= native::table_entries<sizeof(T)>)
+        take_all(scene.materials[0],
+                 [&](auto& to, const auto& table, const auto&) { to = looked_up(table, s.material.number); });
     else
-        for_each_value(active, solids, [&](uint32_t index, const MaskOf<Real>& same) {
-            take_all(scene.solids[index], [&]<class To>(To& to, const auto&, const auto& value) {
+        for_each_value(active, s.material.number, [&](uint32_t number, const MaskOf<Real>& same) {
+            take_all(scene.materials[number], [&]<class To>(To& to, const auto&, const auto& value) {
                 if constexpr (std::is_same_v<To, Vec3<Real>>)
                     assign_where(same, to, spread<Real>(value));
                 else
@@ -227,8 +248,14 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
         assign_where(balls, s.point, along(center, radius, normal));
         assign_where(balls, s.viewer_side, s.point);
     }
+    MaskOf<Real> disks = false;
+    if constexpr (E::has(effect_planes)) disks = active & (form == Index(form_disk));
+    for_each_value(disks, first_slab, [&](uint32_t disk, const MaskOf<Real>& same) {
+        const Vec3<Real> normal = spread<Real>(scene.shared_planes[scene.disks[disk].plane].normal);
+        assign_where(same, s.normal, select(hit.enters, normal, -normal));
+    });
     if constexpr (E::triangles) {
-        for_each_value(active & !convex & !balls, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
+        for_each_value(active & !convex & !balls & !disks, hit.slot, [&](uint32_t slot, const MaskOf<Real>& same) {
             Vec3<T> corner[3];
             triangle_corners(scene, slot, corner);
             const Vec3<Real> first = spread<Real>(corner[0]);
@@ -259,7 +286,7 @@ CISTULA_INLINE void surfaces_at(const Scene& scene, const Ray<Lanes<T, n>, Media
     if constexpr (E::has(effect_texture)) {
         const MaskOf<Real> textured = active & !convex & (s.material.texture >= Index(0));
         for_each_value(textured, s.material.texture, [&](uint32_t texture, const MaskOf<Real>& same) {
-            const Vec2<Real> uv = texture_uv(scene, hit, s.normal, balls, same);
+            const Vec2<Real> uv = texture_uv(scene, hit, s.normal, balls, disks, same);
             assign_where(same, s.color, s.color * texture_at(scene, scene.textures[texture], uv));
         });
     }

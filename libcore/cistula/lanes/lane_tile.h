@@ -87,6 +87,7 @@ class LaneTile {
             }
             if constexpr (by_sample) hash.begin(largest_component(branch.weight) >= least_weight(), adaptive_);
             find_start_plane<E>(scene_, branch.ray);
+            if (branch.depth != 0) start_near<E>(scene_, branch.ray);
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
             if (scene_.may_stray()) kept = branch;
             const Mask single = tree.follow(branch, active, first);
@@ -237,6 +238,7 @@ class LaneTile {
     Mask take_primaries(Entry& branch, First& first, uint32_t& flags) {
         LaneVectors<Real> origins, directions;
         LaneArray<IndexOf<Real>> media, numbers;
+        LaneArray<Real> after(Real(-1));
         int count = 0;
         first.middle = 0;
         while (count < lanes && next_ < pixels_.size()) {
@@ -255,6 +257,7 @@ class LaneTile {
             }
             origins.set(count, ray.origin);
             directions.set(count, ray.direction);
+            after.of[count] = ray.after.t;
             media.of[count] = int32_t(interior_set(ray.media).bits);
             numbers.of[count] = int32_t(number);
             first.of[count] = &pixel;
@@ -273,6 +276,7 @@ class LaneTile {
         }
         branch.ray.origin = origins.all();
         branch.ray.direction = directions.all();
+        branch.ray.after.t = after.all();
         branch.ray.media = {media.all(), scene_.named};
         branch.pixel = numbers.all();
         return Mask::first(count);

@@ -29,8 +29,9 @@ enum Effect : uint32_t {
     effect_spheres = 1u << 18,          // solid spheres (docs/rules.md, 14)
     effect_sky = 1u << 19,              // what rays meet that meet nothing depends on their direction
     effect_smooth = 1u << 20,           // meshes with normals at their corners (docs/rules.md, 17)
+    effect_planes = 1u << 21,           // planes without end, and disks (docs/rules.md, 18)
 };
-inline constexpr int effect_count = 21;
+inline constexpr int effect_count = 22;
 inline constexpr uint32_t all_effects = (1u << effect_count) - 1;
 
 /// A bit of masks whose code also fills the layers of a film (layers.h). No scene calls for it.
@@ -43,7 +44,7 @@ inline constexpr const char* effect_names[effect_count] = {
     "texture",      "diffuse",    "specular",  "opaque-shadows", "transparent-shadows", "reflection",
     "transmission", "refraction", "fresnel",   "absorption",     "visible-lights",      "light-falloff",
     "tint",         "solids",     "triangles", "insides",        "lights-on-faces",     "contacts",
-    "spheres",      "sky",        "smooth"};
+    "spheres",      "sky",        "smooth",    "planes"};
 
 /// A set of effects as a type: `if constexpr (E::has(...))` removes the code of all others.
 template <uint32_t Mask>
@@ -67,6 +68,9 @@ inline constexpr uint32_t mirrors = opaque_bodies | effect_reflection;
 /// Mask for solids that transmit light straight on, all channels alike.
 inline constexpr uint32_t clear_bodies = mirrors | effect_transparent_shadows | effect_transmission | effect_insides;
 
+/// Mask for everything that flat bodies under a background of one color call for.
+inline constexpr uint32_t flat_scenes = all_effects & ~(effect_spheres | effect_sky | effect_smooth | effect_planes);
+
 /// The effect masks that are instantiated, ordered by size. Each is a superset of what some common kind of scene needs
 /// (docs/effects.md).
 inline constexpr uint32_t effect_masks[] = {
@@ -74,7 +78,7 @@ inline constexpr uint32_t effect_masks[] = {
     mirrors,
     clear_bodies,
     clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces,
-    all_effects & ~(effect_spheres | effect_sky | effect_smooth),
+    flat_scenes,
     all_effects,
     all_effects | keeps_budget,
     all_effects | keeps_budget | fills_layers,

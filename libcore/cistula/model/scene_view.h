@@ -51,6 +51,18 @@ struct alignas(16) BallPlane {
     uint32_t shared;    // the same plane among shared_planes, or no_plane
 };
 
+/// A disk on a shared plane. A plane without end is one whose rim is the horizon, 2^12 M from the scene's center.
+template <class Real>
+struct alignas(16) Disk {
+    Vec3<Real> center;
+    Real square;         // of the radius
+    Vec3<Real> axes[2];  // texture coordinates k of a point p: axes[k].p + shift[k]
+    Real shift[2];
+    uint32_t plane;  // among shared_planes
+    uint32_t solid;
+    uint32_t face;  // a number like those of triangles, of which it has one: triangle_planes[face] is `plane`
+};
+
 inline constexpr int slab_lanes = 8;
 
 /// Eight slabs in structure-of-arrays form, so that the host tests a ray against all at once. Unused lanes have a zero
@@ -73,7 +85,8 @@ struct alignas(16) Solid {
     SolidKind kind;
     uint32_t material;
     uint32_t first_slab, slab_count;  // convex: its slabs; a ball has none, and is balls[first_slab]; smooth mesh: 1 +
-                                      // the place of its first normal, and 1 if others may be within its bulges
+                                      // the place of its first normal, and 1 if others may be within its bulges;
+                                      // disk: disks[first_slab], and disk_slabs
     uint32_t first_group;     // convex: the same slabs, ceil(slab_count / 8) groups; flat sheet near a ball: 1 +
                               // its plane in ball_planes; else 0
     uint32_t first_triangle;  // mesh, sheet: scene-wide number of its first triangle
@@ -91,10 +104,16 @@ CISTULA_INLINE bool is_ball(const Solid& solid) {
     return solid.kind == SolidKind::convex && solid.slab_count == 0;
 }
 
+/// The slab_count of a sheet that is a disk or a plane without end.
+inline constexpr uint32_t disk_slabs = 2;
+CISTULA_INLINE bool is_disk(const Solid& solid) {
+    return solid.kind == SolidKind::sheet && solid.slab_count == disk_slabs;
+}
+
 /// Whether triangles have normals at their corners (docs/rules.md, 17): those of a face are normals[first_slab - 1 +
 /// 3 (triangle - first_triangle) + corner], outward, all 0 if it is flat.
 CISTULA_INLINE bool is_smooth(const Solid& solid) {
-    return solid.kind != SolidKind::convex && solid.first_slab != 0;
+    return solid.kind != SolidKind::convex && solid.first_slab != 0 && !is_disk(solid);
 }
 
 /// Whether a solid is a flat sheet near balls.
@@ -296,6 +315,7 @@ struct SceneView {
     Span<uint32_t> near_planes, plane_solids;
     Span<Ball<Real>> balls;
     Span<BallPlane<Real>> ball_planes;
+    Span<Disk<Real>> disks;
     Span<uint32_t> convex;         // the convex solids, balls too; primitive p < convex.size is convex[p]
     Span<Cluster<Real>> clusters;  // primitive p >= convex.size is clusters[p - convex.size]
     Span<Facet<Real>> facets;      // or, where there are any, facets[p - convex.size]

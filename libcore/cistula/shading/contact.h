@@ -3,7 +3,7 @@
 // rounded place of the start; of meshes, what lies ahead of it. And shadow rays of smooth meshes (17, line 8).
 #pragma once
 
-#include "cistula/geometry/shared_plane.h"
+#include "cistula/geometry/disk.h"
 #include "cistula/shading/surface_event.h"
 
 namespace cistula {
@@ -52,6 +52,7 @@ class ContactStart {
         media_.drop_negative();
         const uint32_t own = plane_of_face(scene_, key_solid(hit_.key), key_face(hit_.key));
         const Vec3<Real> met = along(parent_.origin, hit_.t, parent_.direction);
+        if (!scene_.disks.empty()) near_ = near_start<Real> * far_factor(scene_.extent, met);
         if (own != no_plane) {
             const SharedPlane<Real>& plane = scene_.shared_planes[own];
             look_for_meshes(plane);
@@ -76,7 +77,7 @@ class ContactStart {
     /// Moves the start off another plane if that is near, and removes the solids on its other side.
     CISTULA_INLINE bool leave_plane(uint32_t index, const Vec3<Real>& met) {
         const SharedPlane<Real>& plane = scene_.shared_planes[index];
-        const Real near = near_start<Real> * plane.slack;
+        const Real near = near_ * plane.slack;
         const Real off = distance_from(plane, origin_);
         if (magnitude(off) > near && magnitude(distance_from(plane, met)) > near) return false;
         look_for_meshes(plane);
@@ -118,17 +119,25 @@ class ContactStart {
         return ahead == (slope > Real(0)) ? -1 : 1;
     }
 
-    /// The side on which all corners of the triangle that was hit lie; if it lies in the plane itself, as a triangle
-    /// beside one that shares the plane does, the ray's side of it; else 0.
+    /// The side on which all corners of the triangle that was hit lie, or all of the disk; if it lies in the plane
+    /// itself, as a triangle beside one that shares the plane does, the ray's side of it; else 0.
     CISTULA_INLINE int side_of_triangle(const SharedPlane<Real>& plane) const {
-        Vec3<Real> corner[3];
-        triangle_corners(scene_, hit_.slot, corner);
         bool above = false;
         bool below = false;
-        for (int c = 0; c < 3; ++c) {
-            const Real off = distance_from(plane, corner[c]);
-            above |= off > near_start<Real> * plane.slack;
-            below |= off < -near_start<Real> * plane.slack;
+        const auto look_at = [&](Real off) {
+            above |= off > near_ * plane.slack;
+            below |= off < -near_ * plane.slack;
+        };
+        if (is_disk(solid_)) {
+            const Disk<Real>& disk = scene_.disks[solid_.first_slab];
+            const Real slope = dot(scene_.shared_planes[disk.plane].normal, plane.normal);
+            const Real reach = square_root(disk.square * max_or_second(Real(1) - slope * slope, Real(0)));
+            const Real middle = distance_from(plane, disk.center);
+            look_at(middle - reach), look_at(middle + reach);
+        } else {
+            Vec3<Real> corner[3];
+            triangle_corners(scene_, hit_.slot, corner);
+            for (int c = 0; c < 3; ++c) look_at(distance_from(plane, corner[c]));
         }
         if (above != below) return above ? 1 : -1;
         return !above && magnitude(dot(normal_, plane.normal)) > Real(0.5) ? own_side(plane) : 0;
@@ -173,6 +182,7 @@ class ContactStart {
     Vec3<Real>& origin_;
     Media& media_;
     bool meshes_ = false;
+    Real near_ = near_start<Real>;
 };
 
 /// Whether rays from a surface event may start near a shared plane.

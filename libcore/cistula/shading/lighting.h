@@ -149,6 +149,10 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             if constexpr (meets_smooth<E, Media>)
                 assign_where(through_face, shadow.ray.from_solid, IndexOf<Real>(int(no_solid)));
             find_start_plane<E>(scene, shadow.ray);
+            if constexpr (meets_disks<E, Media>)
+                if (const MaskOf<Real> moved = start_near<E>(scene, shadow.ray) > Real(0); any(moved))
+                    assign_where(moved, shadow.distance,
+                                 dot(spread<Real>(light.position) - shadow.ray.origin, shadow.ray.direction));
             if constexpr (meets_contacts<E, Media> && !in_lanes<Real>)
                 if (meshes) count_meshes(scene, intersector, shadow.ray);
             if constexpr (meets_balls<E, Media> && !in_lanes<Real>) from_ball.begin(scene, intersector, shadow.ray);

@@ -3,13 +3,13 @@
 #pragma once
 
 #include "cistula/geometry/convex.h"
-#include "cistula/geometry/triangle.h"
+#include "cistula/geometry/disk.h"
 #include "cistula/numerics/transmittance.h"
 #include "cistula/shading/surface.h"
 
 namespace cistula {
 
-/// A shadow ray, a straight segment to a light; refraction does not bend it. ray.after is not used.
+/// A shadow ray, a straight segment to a light; refraction does not bend it. Of ray.after only disks know (start_near).
 template <class Real, class Media = InteriorList>
 struct ShadowRay {
     Ray<Real, Media> ray;
@@ -205,9 +205,10 @@ CISTULA_INLINE void shadow_ball(const Scene& scene, uint32_t index, const Shadow
     if (!any(inside | enters)) return;
     const MaskOf<Real> on = starts_on_ball(scene, index, ball, ray);
     enters = enters & !on;
-    const Real far = select(inside & on, Real(2) * chord.middle, chord.middle + chord.half);
+    const Real half = chord.half();
+    const Real far = select(inside & on, Real(2) * chord.middle, chord.middle + half);
     const Real leave = select(lit_inside, shadow.distance, clamped(far, Real(0), shadow.distance));
-    const Real enter = clamped(select(inside, Real(0), chord.middle - chord.half), Real(0), shadow.distance);
+    const Real enter = clamped(select(inside, Real(0), chord.middle - half), Real(0), shadow.distance);
     const Material<T>& material = scene.materials[solid.material];
     sum.cross(material, enters);
     sum.cross(material, (inside | enters) & !lit_inside);
@@ -291,9 +292,28 @@ CISTULA_INLINE void shadow_facet(const Scene& scene, uint32_t index, const Shado
         shadow_crossing<Real, E>(scene, true, facet.solid, facet.triangle, c, shadow, sum);
 }
 
-/// Adds the absorption of meshes that contain the ray's origin.
+/// Adds the disks before a light, where `active` holds.
+template <class E, class Real, class Media, class Scene>
+CISTULA_INLINE void shadow_disks(const Scene& scene, const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& active,
+                                 ShadowSumOf<E, Real>& sum) {
+    if constexpr (meets_disks<E, Media>)
+        for (uint32_t i = 0; i < scene.disks.size; ++i) {
+            const Disk<ScalarOf<Real>>& disk = scene.disks[i];
+            Real t;
+            Vec3<Real> at;
+            const MaskOf<Real> meets = active & cross_disk(scene, disk, shadow.ray, t, at);
+            const MaskOf<Real> before = meets & (t < shadow.distance);
+            if (!any(before)) continue;
+            if constexpr (E::has(effect_lights_on_faces))
+                if (lies_on(scene, *shadow.light, disk.solid, disk.face)) continue;
+            sum.cross(scene.materials[scene.solids[disk.solid].material], before);
+        }
+}
+
+/// Adds the absorption of meshes that contain the ray's origin, and the disks before the light.
 template <class Real, class E, class Media, class Scene>
 CISTULA_INLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media>& shadow, ShadowSum<E>& sum) {
+    shadow_disks<E>(scene, shadow, true, sum);
     if constexpr (E::has(effect_absorption)) {
         shadow.ray.media.for_each([&](uint32_t index, int count) {
             const Solid& solid = scene.solids[index];

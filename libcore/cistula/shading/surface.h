@@ -1,7 +1,7 @@
 // The surface at a hit, computed from the hit's ids rather than from the ray where that is more accurate.
 #pragma once
 
-#include "cistula/geometry/ball.h"
+#include "cistula/geometry/disk.h"
 #include "cistula/model/scene_access.h"
 #include "cistula/model/texture.h"
 #include "cistula/numerics/trigonometry.h"
@@ -77,6 +77,11 @@ CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, [[maybe_unused]] const R
         const bool outward = (face & 1u) != 0;  // the high side's outward normal is the slab's
         return outward == hit.enters ? normal : -normal;
     }
+    if constexpr (meets_disks<E, Media>)
+        if (is_disk(solid)) {
+            const Vec3<Real>& normal = scene.shared_planes[scene.disks[solid.first_slab].plane].normal;
+            return hit.enters ? normal : -normal;
+        }
     if constexpr (E::triangles) {
         Vec3<Real> normal = outward_normal(scene, hit.slot);
         if constexpr (E::has(effect_contacts)) normal = shared_normal(scene, face, normal);
@@ -108,14 +113,15 @@ CISTULA_NOINLINE Vec2<Real> ball_uv(const Ball<Real>& ball, Vec3<Real> normal) {
             Real(elementary::atan2(square_root(x * x + y * y), z) / pi)};
 }
 
-/// The texture coordinates of a hit on a ball, or on a triangle that has them. `normal`: of the surface, toward the
-/// viewer; used for a ball.
+/// The texture coordinates of a hit on a ball, a disk, or a triangle that has them. `normal`: of the surface, toward
+/// the viewer; used for a ball.
 template <class Real, class Scene>
 CISTULA_INLINE Vec2<Real> texture_uv(const Scene& scene, const Hit<Real>& hit,
                                      [[maybe_unused]] const Vec3<Real>& normal) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
     if constexpr (requires { scene.balls; })
         if (is_ball(solid)) return ball_uv(scene.balls[solid.first_slab], hit.enters ? normal : -normal);
+    if (is_disk(solid)) return {hit.u, hit.v};
     const Vec2<Real>* uv = scene.uvs.data + solid.first_uv + 3 * (key_face(hit.key) - solid.first_triangle);
     return uv[0] * (Real(1) - hit.u - hit.v) + uv[1] * hit.u + uv[2] * hit.v;
 }
@@ -145,18 +151,24 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
         return s;
     }
     if constexpr (E::triangles) {
-        Vec3<Real> corner[3];
-        triangle_corners(scene, hit.slot, corner);
-        s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
-        s.viewer_side = apex_at(scene, hit.slot, corner, s.normal, hit.enters).from(s.point);
-        if constexpr (meets_balls<E, Media>)
-            if (is_sheet_near_ball(solid)) s.viewer_side = off_sheet(scene.extent, ray, hit.t, s.normal);
-        if constexpr (meets_smooth<E, Media>)
-            if (const Vec3<Real>* normals = corner_normals(scene, hit.slot)) {
-                s.smooth = true;
-                s.shading = normalized(normal_between(normals, hit));
-                bend_normal(ray.direction, s.normal, s.shading, s.mirrored);
-            }
+        bool disk = false;
+        if constexpr (meets_disks<E, Media>) disk = is_disk(solid);
+        if (disk) {
+            s.point = s.viewer_side = along(ray.origin, hit.t, ray.direction);  // rays start as rules 11 say
+        } else {
+            Vec3<Real> corner[3];
+            triangle_corners(scene, hit.slot, corner);
+            s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
+            s.viewer_side = apex_at(scene, hit.slot, corner, s.normal, hit.enters).from(s.point);
+            if constexpr (meets_balls<E, Media>)
+                if (is_sheet_near_ball(solid)) s.viewer_side = off_sheet(scene.extent, ray, hit.t, s.normal);
+            if constexpr (meets_smooth<E, Media>)
+                if (const Vec3<Real>* normals = corner_normals(scene, hit.slot)) {
+                    s.smooth = true;
+                    s.shading = normalized(normal_between(normals, hit));
+                    bend_normal(ray.direction, s.normal, s.shading, s.mirrored);
+                }
+        }
     }
     if constexpr (E::has(effect_texture)) {
         if (material.texture >= 0) {

@@ -46,6 +46,15 @@ CISTULA_HD inline bool is_far(const Vec3<double>& point, double extent) {
     return dot(point, point) > 4 * extent * extent;
 }
 
+/// Whether a scene has disks.
+template <class Scene>
+CISTULA_HD inline bool has_disks(const Scene& scene) {
+    if constexpr (requires { scene.disks; })
+        return !scene.disks.empty();
+    else
+        return false;
+}
+
 /// Moves the origin of a ray that starts beyond the sphere of radius 2 M to where it enters that (docs/rules.md, 1), by
 /// `start`. False if it misses the sphere.
 CISTULA_HD inline bool enter_sphere(double extent, const Vec3<double>& direction, Vec3<double>& origin, double& start) {
@@ -70,15 +79,25 @@ CISTULA_HD inline void place(Ray<Real, Media>& ray, const Vec3<double>& origin, 
     for (int axis = 0; axis < 3; ++axis) materialize(ray.origin[axis]), materialize(ray.direction[axis]);
 }
 
+/// Moves a ray that starts beyond the sphere of radius 2 M to where it enters that, by `start`; `after` then says that
+/// disks are met from -start on. False if it meets nothing.
+template <class Real, class Media, class Scene>
+CISTULA_HD inline bool begin_from_afar(const Scene& scene, const Vec3<double>& direction, Vec3<double>& origin,
+                                       Ray<Real, Media>& ray, double& start) {
+    const bool enters = enter_sphere(double(scene.extent), direction, origin, start);
+    if (enters && has_disks(scene)) ray.after.t = Real(-1 - start);
+    return enters || has_disks(scene);
+}
+
 /// The primary ray, starting where it enters the sphere of radius 2 M, computed in double for either Real. `start` is
-/// the distance of that point from the camera. False if the ray misses the sphere.
+/// the distance of that point from the camera. False if the ray meets nothing.
 template <class Real, class Media, class Scene>
 CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, const Vec3<double>& direction,
                                    Ray<Real, Media>& ray, double& start) {
     const CameraSide& side = frame.camera_sides[camera_side(frame, direction)];
     Vec3<double> origin = frame.camera_planes == 0 ? frame.camera.position : side.start;
     start = 0;
-    if (frame.is_far && !enter_sphere(double(scene.extent), direction, origin, start)) return false;
+    if (frame.is_far && !begin_from_afar(scene, direction, origin, ray, start)) return false;
     place(ray, origin, direction);
     assign(ray.media, side.media);
     return true;

@@ -29,13 +29,13 @@ inline constexpr double no_answer = __builtin_nan("");
 using QueryEffects = Effects<all_effects & ~effect_texture>;
 
 /// Sets up a ray, all but the solids around its origin (camera_solids). `start`: how far from the question's origin it
-/// starts. False if it comes from beyond the scene and misses it.
+/// starts. False if it comes from beyond the scene and meets nothing.
 template <class Real, class Scene>
 CISTULA_HD inline bool begin_ray(const Scene& scene, const RayQuestion& question, Ray<Real>& ray, double& start) {
     Vec3<double> origin = question.origin;
     ray = Ray<Real>();
     start = 0;
-    if (is_far(origin, double(scene.extent)) && !enter_sphere(double(scene.extent), question.toward, origin, start))
+    if (is_far(origin, double(scene.extent)) && !begin_from_afar(scene, question.toward, origin, ray, start))
         return false;
     place(ray, origin, question.toward);
     return true;
@@ -60,6 +60,11 @@ CISTULA_HD inline bool begin_segment(const Scene& scene, const RayQuestion& ques
             shadow.light = &light;
             end.position = light.position;
         }
+    if (start >= distance && has_disks(scene)) {  // it ends before the sphere that its line enters
+        shadow.ray.after.t = -1;
+        place(shadow.ray, question.origin, way / distance);
+        start = 0;
+    }
     const LightAim<Real> aim = LightAim<Real>::of(end, shadow.ray.origin, Vec3<Real>(Real(0)));
     shadow.ray.direction = aim.direction;
     shadow.distance = aim.distance;

@@ -157,6 +157,7 @@ class RayTree {
                     }
             }
             find_start_plane<E>(scene_, branch.ray);
+            start_near<E>(scene_, branch.ray);
             // All that comes from one of the first surface's children is followed before the other.
             if constexpr (E::has(fills_layers))
                 if (branch.depth == 1) sums_.enter(branch.mirrored);

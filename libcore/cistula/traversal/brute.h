@@ -46,6 +46,7 @@ struct BruteIntersector {
         Hit<Real> best;
         // With t = -1 a ray that is not finite finds nothing; a separate branch would make the warp diverge.
         best.t = is_finite(ray) ? RealTraits<Real>::infinity : Real(-1);
+        closest_disk<E>(scene, is_finite(ray), ray, best);
         find_closest<E>(ray, best);
         if (!best.found()) best.t = RealTraits<Real>::infinity;
         return best;

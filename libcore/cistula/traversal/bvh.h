@@ -109,7 +109,8 @@ struct BvhIntersector {
         const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
         BoxRay box_ray = BoxRay::of(ray.origin, ray.direction);
         box_ray.near_limit = tree_near(ray.after.t);
-        box_ray.far_limit = RealTraits<float>::infinity;
+        closest_disk<E>(scene, true, ray, best);
+        box_ray.far_limit = tree_far(best.t);
         const uint32_t left = flat_start(scene, ray);
         traverse_tree(scene.tree, scene.tree_items, box_ray, [&](uint32_t primitive) {
             if (!is_solid<E>(scene, primitive) && !scene.facets.empty())

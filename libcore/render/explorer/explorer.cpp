@@ -106,19 +106,21 @@ std::vector<uint32_t> drawn_halves(const MeshSource& mesh, const std::vector<uin
     return drawn;
 }
 
-/// Adds the great circles of a sphere across the axes, each as 24 edges.
-void add_circles(const SphereObject& sphere, Wireframe& wires) {
+/// Adds a circle as 24 edges. `normal`: across it.
+void add_circle(const glm::dvec3& center, const glm::dvec3& normal, double radius, Wireframe& wires) {
     constexpr int count = 24;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto at = [&](int i) {
-            const double angle = 2 * std::numbers::pi * i / count;
-            glm::dvec3 p = sphere.center;
-            p[(axis + 1) % 3] += sphere.radius * std::cos(angle);
-            p[(axis + 2) % 3] += sphere.radius * std::sin(angle);
-            return p;
-        };
-        for (int i = 0; i < count; ++i) wires.push_back({at(i), at(i + 1)});
-    }
+    int least = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        if (std::abs(normal[axis]) < std::abs(normal[least])) least = axis;
+    glm::dvec3 other(0);
+    other[least] = 1;
+    const glm::dvec3 along = radius * normalized(cross(normal, other));
+    const glm::dvec3 across = cross(normalized(normal), along);
+    const auto at = [&](int i) {
+        const double angle = 2 * std::numbers::pi * i / count;
+        return center + std::cos(angle) * along + std::sin(angle) * across;
+    };
+    for (int i = 0; i < count; ++i) wires.push_back({at(i), at(i + 1)});
 }
 
 }  // namespace
@@ -134,7 +136,16 @@ std::vector<Wireframe> wireframes(const SceneSource& source, size_t most) {
             continue;
         }
         if (solid.sphere) {
-            add_circles(*solid.sphere, wires);
+            for (int axis = 0; axis < 3; ++axis) {
+                glm::dvec3 normal(0);
+                normal[axis] = 1;
+                add_circle(solid.sphere->center, normal, solid.sphere->radius, wires);
+            }
+            continue;
+        }
+        if (solid.disk) {
+            if (!solid.disk->is_endless())
+                add_circle(solid.disk->center, solid.disk->normal, solid.disk->radius, wires);
             continue;
         }
         const MeshSource& mesh = solid.mesh;

@@ -30,7 +30,10 @@ class FacesAtCamera {
           half_unit_(half_unit),
           unit_(double(RealTraits<Real>::unit) * double(scene.extent)) {}
 
-    std::vector<FacePlane> find() {
+    /// `is_far`: it is beyond all but planes without end.
+    std::vector<FacePlane> find(bool is_far) {
+        for (const Disk<Real>& disk : scene_.disks) look_at_disk(disk);
+        if (is_far) return std::move(planes_);
         std::vector<bool> near(scene_.solids.size());
         for (size_t i = 0; i < scene_.solids.size(); ++i) near[i] = may_touch(scene_.hulls[i], scene_.reaches[i]);
         for (const uint32_t i : scene_.convex)
@@ -92,6 +95,18 @@ class FacesAtCamera {
         for (const FacePlane& plane : at_camera) add(plane);
     }
 
+    void look_at_disk(const Disk<Real>& disk) {
+        const SharedPlane<Real>& plane = scene_.shared_planes[disk.plane];
+        const PlaneEquation equation{dvec3(plane.normal), double(plane.offset)};
+        const double rounding = with_slack(rounding_of(equation.normal, camera_size(), equation.offset), disk.plane);
+        const dvec3 off = camera_ - dvec3(disk.center);
+        Box box;
+        box.add(camera_);
+        if (magnitude(equation.distance(camera_)) <= range(equation, box, rounding, disk.solid) &&
+            dot(off, off) <= double(disk.square))
+            add({equation.normal, equation.offset, apart * max_or_second(unit_, rounding)});
+    }
+
     void look_at_triangles(const Cluster<Real>& cluster) {
         const double most = max_or_second(touching * unit_, scene_.reaches[cluster.solid].most);
         for (uint32_t lane = 0; lane < cluster.count; ++lane) {
@@ -137,7 +152,7 @@ template <class Real>
 void set_camera_sides(const CompiledScene<Real>& scene, const dvec3& half_unit, FrameView& frame) {
     const dvec3 camera = frame.camera.position;
     std::vector<FacePlane> planes;
-    if (!frame.is_far) planes = FacesAtCamera<Real>(scene, camera, half_unit).find();
+    planes = FacesAtCamera<Real>(scene, camera, half_unit).find(frame.is_far);
     frame.camera_planes = int(planes.size());
     for (size_t i = 0; i < planes.size(); ++i) frame.camera_normals[i] = planes[i].normal;
     for (int side = 0; side < 1 << frame.camera_planes; ++side) {

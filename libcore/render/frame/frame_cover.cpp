@@ -75,7 +75,8 @@ void FrameCover::add_all(size_t number) {
 }
 
 void FrameCover::add(size_t number, const Hull& hull, double extent, const FrameView& frame) {
-    std::optional<std::vector<Point>> points = projected(hull, extent, frame);
+    std::optional<std::vector<Point>> points;
+    if (hull.reach <= RealTraits<double>::largest) points = projected(hull, extent, frame);
     if (!points) return add_all(number);
     add(filled(number, points->empty() ? *points : convex_outline(*points)));
 }

@@ -18,7 +18,7 @@ Hull box_around(const std::vector<Hull>& hulls) {
             box.add(p + hull.reach);
         }
     const auto corners = box.corners();
-    return {{corners.begin(), corners.end()}, 0};
+    return {{corners.begin(), corners.end()}, length(box.high - box.low) < INFINITY ? 0 : INFINITY};
 }
 
 template <class Real>

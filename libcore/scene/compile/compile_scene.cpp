@@ -30,6 +30,7 @@
 #include "scene/compile/meshes/mesh_apex.h"
 #include "scene/compile/scene_hash.h"
 #include "scene/compile/solids/compile_balls.h"
+#include "scene/compile/solids/compile_disks.h"
 #include "scene/compile/solids/compile_solids.h"
 #include "scene/compile/solids/placed_bodies.h"
 #include "scene/description/rotation.h"
@@ -104,7 +105,7 @@ class Compiler {
         places_.distances.resize(source_.solids.size());
         places_.bulges.resize(source_.solids.size());
         flat_planes_.resize(source_.solids.size());
-        by_planes_.assign(source_.solids.size(), false);
+        primitives_.assign(source_.solids.size(), effect_triangles);
         if (description_.contact) hash_.add(*description_.contact);
         hash_.add(normalization_.center);
         hash_.add(static_cast<uint32_t>(normalization_.scale));
@@ -113,9 +114,11 @@ class Compiler {
         for (const SolidContacts& solid : bodies_.contacts.solids) scene_.reaches.push_back(solid.reach);
         compile_convex();
         compile_balls();
+        compile_disks();
         lights_ = normalize_lights(source_, normalization_, bodies_.convex);
         light_faces_.resize(lights_.size());
         find_convex_incidents(lights_, bodies_, incident_reach(), light_faces_);
+        find_disk_incidents(lights_, bodies_, scene_.solids, incident_reach(), light_faces_);
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
             scene_.solid_names.push_back(source_.solids[i].name);
             scene_.solids[i].material = source_.solids[i].material;
@@ -124,6 +127,7 @@ class Compiler {
         settle_on_faces();
         add_shared_planes(scene_, bodies_.contacts);
         list_shared_planes(scene_, bodies_, places_.boxes);
+        add_disks(scene_, source_, bodies_.disks, normalization_);
         find_near_balls(scene_, bodies_.balls, places_.boxes, flat_planes_);
         refuse_lights_on_balls();
         add_slabs();
@@ -156,7 +160,7 @@ class Compiler {
             bound_sphere(convex, solid);
             scene_.convex.push_back(convex.solid);
             places_.boxes[convex.solid] = convex.box;
-            by_planes_[convex.solid] = true;
+            primitives_[convex.solid] = effect_solids;
         }
     }
 
@@ -168,9 +172,38 @@ class Compiler {
             if (source_.materials[source_.solids[ball.solid].material].texture >= 0)
                 for (const dvec3& axis : ball.axes) hash_.add(axis);
             places_.boxes[ball.solid] = ball.box();
-            by_planes_[ball.solid] = true;
+            primitives_[ball.solid] = effect_spheres;
         }
         add_balls(scene_, bodies_.balls);
+    }
+
+    /// All of disks but what needs their planes in the scene's precision (add_disks).
+    void compile_disks() {
+        for (uint32_t i = 0; i < bodies_.disks.size(); ++i) {
+            const PlacedDisk& disk = bodies_.disks[i];
+            hash_.add(disk.solid);
+            hash_.add(disk.object->normal);
+            hash_.add(disk.equation.normal);
+            hash_.add(disk.equation.offset);
+            hash_.add(disk.is_endless() ? dvec3(0) : disk.center);
+            hash_.add(disk.radius);
+            Solid& solid = scene_.solids[disk.solid];
+            solid = {};
+            solid.kind = SolidKind::sheet;
+            solid.first_slab = i;
+            solid.slab_count = disk_slabs;
+            solid.first_triangle = triangle_count_;
+            triangle_count_ += triangles_of_disk;
+            primitives_[disk.solid] = effect_planes;
+            flat_planes_[disk.solid] = disk.equation;
+            places_.boxes[disk.solid] = disk.is_endless() ? bodies_.sizes[disk.solid].box : disk.box();
+            if (!disk.is_endless()) continue;
+            scene_.hulls[disk.solid].reach = INFINITY;
+            if (magnitude(disk.equation.offset) > horizon * normalization_.extent)
+                scene_.warnings.push_back(source_.solids[disk.solid].place +
+                                          ": the plane is not seen: it is more than 4,096 times as far away as the "
+                                          "scene is large");
+        }
     }
 
     /// Shadow rays know whether a light is inside a ball, so it must not be on one.
@@ -234,6 +267,17 @@ class Compiler {
         });
     }
 
+    /// Whether a disk comes near a convex solid in a box: lines in a ball that only touches it must know of it, too
+    /// (docs/rules.md, 14, line 14).
+    bool meets_disk(const SceneView<Real>& view, uint32_t index, const PaddedBox& box) const {
+        const dvec3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
+        const bool ball = is_ball(view.solids[index]);
+        const double reach =
+            touching + (ball ? double(view.balls[view.solids[index].first_slab].radius) : 0.5 * length(high - low));
+        return std::any_of(bodies_.disks.begin(), bodies_.disks.end(),
+                           [&](const PlacedDisk& disk) { return disk.distance(0.5 * (low + high)) <= reach; });
+    }
+
     /// Finds solids inside of which nothing else is. An optimization, skipped for scenes with very many pairs.
     void find_isolated_solids() {
         const SceneView<Real> view = scene_.view();
@@ -242,7 +286,7 @@ class Compiler {
         std::vector<PaddedBox> boxes;
         for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(primitive_box(view, p));
         for (uint32_t a = 0; a < view.convex.size; ++a) {
-            bool isolated = true;
+            bool isolated = !meets_disk(view, view.convex[a], boxes[a]);
             for (uint32_t b = 0; b < primitives && isolated; ++b)
                 isolated = a == b || are_apart(boxes[a], boxes[b]) || is_outside_ball(view, a, b, boxes[b]);
             scene_.solids[view.convex[a]].isolated = isolated ? 1 : 0;
@@ -344,7 +388,9 @@ class Compiler {
         for (uint32_t first = 0, end = 0; first < count; first = end) {
             for (size_t triangles = 0; end < count && end - first < most_at_once && triangles < most_triangles; ++end)
                 triangles += source_.solids[end].mesh.triangles.size();
-            const auto is_mesh = [&](uint32_t i) { return !source_.solids[i].polyhedron && !by_planes_[i]; };
+            const auto is_mesh = [&](uint32_t i) {
+                return !source_.solids[i].polyhedron && primitives_[i] == effect_triangles;
+            };
             prepared.resize(end - first);
             tbb::parallel_invoke(
                 [&] {
@@ -486,6 +532,14 @@ class Compiler {
                 light_distances(lights_, convex, light_faces_, normalization_.extent, 2 * incident_reach());
         for (const PlacedBall& ball : bodies_.balls)
             places_.distances[ball.solid] = light_distances(lights_, ball, normalization_.extent, 2 * incident_reach());
+        for (const PlacedDisk& disk : bodies_.disks) {
+            if (disk.is_endless())  // lights are no farther from the box than from the plane
+                for (const NormalizedLight& light : lights_)
+                    places_.boxes[disk.solid].add(light.position -
+                                                  disk.equation.distance(light.position) * disk.equation.normal);
+            places_.distances[disk.solid] =
+                light_distances(lights_, disk, light_faces_, normalization_.extent, 2 * incident_reach());
+        }
         const dvec3 bound =
             radiance_bound(source_, textures, places_, 1 / normalization_.factor, lights_, scene_.warnings);
         scale_ = radiance_scale(description_, bound, sizeof(Real) == sizeof(float));
@@ -495,7 +549,7 @@ class Compiler {
         std::vector<double> sizes(source_.materials.size());  // of the largest solid of each
         for (size_t i = 0; i < places_.boxes.size(); ++i) {
             double& size = sizes[source_.solids[i].material];
-            if (!places_.boxes[i].empty())
+            if (!places_.boxes[i].empty() && !source_.solids[i].disk)
                 size = max_or_second(length(places_.boxes[i].high - places_.boxes[i].low), size);
         }
         for (size_t i = 0; i < source_.materials.size(); ++i) {
@@ -635,8 +689,7 @@ class Compiler {
         std::vector<MaterialUse> uses;
         for (size_t i = 0; i < source_.solids.size(); ++i)
             uses.push_back({&source_.materials[source_.solids[i].material], source_.solids[i].place,
-                            source_.solids[i].closed, by_planes_[i], source_.solids[i].sphere != nullptr,
-                            is_smooth(scene_.solids[i])});
+                            source_.solids[i].closed, primitives_[i], is_smooth(scene_.solids[i])});
         scene_.effect_reasons =
             explain_effects(description_, uses, light_on_face(source_, lights_, light_faces_), contact());
         scene_.effects = required_effects(scene_.effect_reasons);
@@ -648,6 +701,8 @@ class Compiler {
         if (contacts.planes.empty()) return "";
         const std::string &first = source_.solids[contacts.first[0]].place,
                           &second = source_.solids[contacts.first[1]].place;
+        if (source_.solids[contacts.first[0]].disk && first == second)
+            return first + " is a plane or a disk, whose plane all shares that touches it";
         std::string text = first == second ? "faces of " + first : "faces of " + first + " and " + second;
         text += " lie in one plane";
         if (contacts.pairs > 1)
@@ -675,7 +730,7 @@ class Compiler {
     std::vector<NormalizedLight> lights_;
     LightFaces light_faces_;
     SolidPlaces places_;
-    std::vector<bool> by_planes_;                            // each solid is given by planes, or a ball
+    std::vector<uint32_t> primitives_;                       // the effect of what each solid is made of
     std::vector<std::optional<PlaneEquation>> flat_planes_;  // of each flat sheet
     uint32_t triangle_count_ = 0;
     RadianceScale scale_;

@@ -68,6 +68,7 @@ SceneView<Real> CompiledScene<Real>::view() const {
     v.plane_solids = span_of(plane_solids);
     v.balls = span_of(balls);
     v.ball_planes = span_of(ball_planes);
+    v.disks = span_of(disks);
     v.convex = span_of(convex);
     v.clusters = span_of(clusters);
     v.uvs = span_of(uvs);
@@ -97,9 +98,9 @@ size_t CompiledScene<Real>::memory() const {
     for (const Hull& hull : hulls) outlined += bytes_of(hull.points);
     return outlined + bytes_of(solids) + bytes_of(slabs) + bytes_of(slab_groups) + bytes_of(convex) +
            bytes_of(shared_planes) + bytes_of(slab_planes) + bytes_of(triangle_planes) + bytes_of(near_planes) +
-           bytes_of(plane_solids) + bytes_of(balls) + bytes_of(ball_planes) + bytes_of(clusters) + bytes_of(uvs) +
-           bytes_of(normals) + bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) + bytes_of(visible_lights) +
-           bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
+           bytes_of(plane_solids) + bytes_of(balls) + bytes_of(ball_planes) + bytes_of(disks) + bytes_of(clusters) +
+           bytes_of(uvs) + bytes_of(normals) + bytes_of(materials) + bytes_of(lights) + bytes_of(incidents) +
+           bytes_of(visible_lights) + bytes_of(textures) + bytes_of(texels) + bytes_of(tree) + bytes_of(tree_items) +
            bytes_of(visible_light_tree) + bytes_of(light_groups) + bytes_of(sky_stops);
 }
 

@@ -20,7 +20,7 @@ namespace cistula {
 /// All points within distance `reach` of the convex hull of `points`, in the frame of reference.
 struct Hull {
     std::vector<Vec3<double>> points;
-    double reach = 0;
+    double reach = 0;  // infinite: everything
 };
 
 /// Whether a scene needs one effect. `because` names the material, object or light that requires it, or says that none
@@ -41,6 +41,7 @@ struct CompiledScene {
     std::vector<uint32_t> slab_planes, triangle_planes, near_planes, plane_solids;
     std::vector<Ball<Real>> balls;
     std::vector<BallPlane<Real>> ball_planes;
+    std::vector<Disk<Real>> disks;
     std::vector<uint32_t> convex;
     std::vector<Cluster<Real>> clusters;
     std::vector<Vec2<Real>> uvs;

@@ -30,6 +30,7 @@ bool fits_lanes(const SceneView<Real>& scene) {
     for (const Solid& solid : scene.solids) {
         closed += solid.kind != SolidKind::sheet;
         if (2 * solid.slab_count > LaneKey::faces) return false;
+        if (is_disk(solid) && solid.first_triangle > LaneKey::faces) return false;
     }
     if (closed > LaneScene<Real>::most_closed) return false;
     // Rays that start at a contact of a mesh count the meshes around them, one after the other: most of those in glass.
@@ -43,6 +44,9 @@ bool fits_lanes(const SceneView<Real>& scene) {
 }
 
 }  // namespace
+
+/// Indices of refraction that are looked for one by one.
+constexpr size_t most_indices = 4;
 
 template <class Real>
 OwnedLaneScene<Real>::OwnedLaneScene(const SceneView<Real>& from, uint32_t most_with_bits) {
@@ -71,6 +75,9 @@ void OwnedLaneScene<Real>::number_solids(const SceneView<Real>& from, uint32_t m
     for (Cluster<Real>& cluster : clusters_) cluster.solid = place[cluster.solid];
     incidents_.assign(from.incidents.begin(), from.incidents.end());
     for (Incident& incident : incidents_) incident.solid = place[incident.solid];
+    disks_.assign(from.disks.begin(), from.disks.end());
+    for (Disk<Real>& disk : disks_) disk.solid = place[disk.solid];
+    scene_.disks = span_of(disks_);
     plane_solids_.assign(from.plane_solids.begin(), from.plane_solids.end());
     for (uint32_t& solid : plane_solids_) solid = place[solid];
     scene_.numbers = span_of(numbers_);
@@ -103,9 +110,20 @@ void OwnedLaneScene<Real>::find_sets(const SceneView<Real>& from) {
         return is_closed(i) && largest_component(scene_.materials[solids_[i].material].absorption) > Real(0);
     });
     fill(scene_.clear, [&](uint32_t i) { return is_clear(from, numbers_[i]); });
+    for (uint32_t i = 0; i < scene_.closed && indices_.size() <= most_indices; ++i) {
+        const double index = scene_.materials[solids_[i].material].index;
+        const auto same = [&](const SolidsOfIndex& one) { return one.index == index; };
+        if (std::none_of(indices_.begin(), indices_.end(), same)) indices_.push_back({index, {}});
+    }
+    if (indices_.size() > most_indices) indices_.clear();
+    for (SolidsOfIndex& one : indices_)
+        fill(one.solids,
+             [&](uint32_t i) { return is_closed(i) && scene_.materials[solids_[i].material].index == one.index; });
+    scene_.indices = span_of(indices_);
     const auto ball = [&](uint32_t i) { return from.balls[solids_[i].first_slab]; };
     fill(scene_.kin, [&](uint32_t i) { return is_ball(solids_[i]) && ball(i).has_kin != 0; });
-    for (const Ball<Real>& each : from.balls) scene_.has_ball_starts |= each.plane_count != 0 || each.near_meshes != 0;
+    fill(scene_.from_balls,
+         [&](uint32_t i) { return is_ball(solids_[i]) && (ball(i).plane_count != 0 || ball(i).near_meshes != 0); });
     fill(scene_.transmitting, [&](uint32_t i) { return transmits(from, numbers_[i]); });
 }
 
@@ -140,7 +158,9 @@ void OwnedLaneScene<Real>::copy_parts() {
 
 template <class Real>
 void OwnedLaneScene<Real>::find_tree() {
-    if (takes_loop(scene_) && !scene_.meshes.any) {  // of a mesh, nothing but boxes tells what a ray misses
+    scene_.loops = takes_loop(scene_) && !scene_.meshes.any;  // of a mesh, nothing but boxes tells what a ray misses
+    find_columns();
+    if (takes_loop(scene_) && !scene_.meshes.any) {
         scene_.tree = {};
         scene_.tree_items = {};
         return;
@@ -152,12 +172,30 @@ void OwnedLaneScene<Real>::find_tree() {
     scene_.tree_items = span_of(tree_items_);
 }
 
+/// Lists balls for the loop, which takes more of them than of other primitives: a miss is some twenty operations.
+template <class Real>
+void OwnedLaneScene<Real>::find_columns() {
+    const size_t others = convex_.size() - scene_.balls.size + clusters_.size();
+    if (scene_.named || scene_.meshes.any || scene_.kin.any || others > most_in_loop) return;
+    for (const uint32_t i : convex_)
+        if (is_ball(solids_[i])) scene_.columns.add(scene_.balls[solids_[i].first_slab], i);
+    scene_.loops |= scene_.columns.count > 0;
+}
+
 template <class Real>
 void OwnedLaneScene<Real>::fill_tables() {
-    SolidTables<Real>& tables = scene_.tables;
-    for (uint32_t i = 0; i < std::min<size_t>(solids_.size(), std::size(tables.diffuse.of)); ++i) {
-        const Solid& solid = solids_[i];
-        const Material<Real>& material = scene_.materials[solid.material];
+    ShadingTables<Real>& tables = scene_.tables;
+    const auto entries = std::size(tables.diffuse.of);
+    for (const Solid& solid : solids_)
+        shading_.push_back({int32_t(solid.material), int32_t(form_of(solid)), int32_t(solid.first_slab)});
+    scene_.shading = span_of(shading_);
+    for (size_t i = 0; i < std::min(shading_.size(), entries); ++i) {
+        tables.material.of[i] = shading_[i].material;
+        tables.form.of[i] = shading_[i].form;
+        tables.first_slab.of[i] = shading_[i].first_slab;
+    }
+    for (uint32_t i = 0; i < std::min<size_t>(scene_.materials.size, entries); ++i) {
+        const Material<Real>& material = scene_.materials[i];
         const auto set = [i](auto& table, const auto& value) {
             if constexpr (std::is_array_v<std::remove_reference_t<decltype(table)>>)
                 for (int c = 0; c < 3; ++c) table[c].of[i] = value[c];
@@ -175,10 +213,7 @@ void OwnedLaneScene<Real>::fill_tables() {
         set(tables.transmission, material.transmission);
         set(tables.integer_exponent, material.integer_exponent);
         set(tables.fresnel, int(material.fresnel));
-        set(tables.material, int(solid.material));
         set(tables.texture, material.texture);
-        set(tables.first_slab, int(solid.first_slab));
-        set(tables.form, form_of(solid));
     }
 }
 
@@ -186,7 +221,8 @@ template <class Real>
 size_t OwnedLaneScene<Real>::memory() const {
     const auto bytes = [](const auto&... arrays) { return (... + bytes_of(arrays)); };
     return sizeof *this + bytes(numbers_, places_, convex_, convex_places_, tree_items_, solids_, convex_copies_,
-                                clusters_, planes_, sides_, incidents_, tree_, plane_solids_, plane_bodies_);
+                                shading_, indices_, clusters_, planes_, sides_, incidents_, tree_, plane_solids_,
+                                plane_bodies_, disks_);
 }
 
 template <class Real>

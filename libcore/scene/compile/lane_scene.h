@@ -27,6 +27,7 @@ class OwnedLaneScene {
     void find_sets(const SceneView<Real>& from);
     void copy_parts();
     void find_tree();
+    void find_columns();
     void fill_tables();
 
     LaneScene<Real> scene_{};
@@ -34,7 +35,10 @@ class OwnedLaneScene {
     std::deque<std::vector<uint32_t>> sets_;  // of the SolidSets
     std::vector<Solid> solids_;
     std::vector<IndexedSolid<Real>> convex_copies_;
+    std::vector<SolidShading> shading_;
+    std::vector<SolidsOfIndex> indices_;
     std::vector<Cluster<Real>> clusters_;
+    std::vector<Disk<Real>> disks_;
     std::vector<SheetPlane<Real>> planes_;
     std::vector<TriangleSides<Real>> sides_;
     std::vector<Incident> incidents_;

@@ -19,6 +19,7 @@ void for_each_span(SceneView<Real>& view, const Visit& visit) {
     visit(view.plane_solids);
     visit(view.balls);
     visit(view.ball_planes);
+    visit(view.disks);
     visit(view.convex);
     visit(view.clusters);
     visit(view.facets);

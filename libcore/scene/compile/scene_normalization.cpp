@@ -32,6 +32,25 @@ void add_solid(Box& box, const SolidObject& solid) {
     }
 }
 
+void add_disk(Box& box, const DiskObject& disk) {
+    const glm::dvec3 normal = normalized(disk.normal);
+    glm::dvec3 reach;
+    for (int axis = 0; axis < 3; ++axis)
+        reach[axis] = disk.radius * square_root(max_or_second(1 - normal[axis] * normal[axis], 0.0));
+    box.add(disk.center - reach);
+    box.add(disk.center + reach);
+}
+
+/// A box around what a scene of planes without end has: their points nearest to the origin, and lights.
+Box box_of_planes(const SceneSource& source) {
+    Box box;
+    for (const SourceSolid& solid : source.solids)
+        if (solid.disk) box.add(solid.disk->center);
+    if (!box.empty())
+        for (const LightDescription& light : source.description->lights) box.add(light.position);
+    return box;
+}
+
 double largest_coordinate(const Box& box, const glm::dvec3& center) {
     double largest = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -58,6 +77,8 @@ Box world_box(const SceneSource& source) {
             add_solid(box, *solid.polyhedron);
         } else if (solid.sphere) {
             add_sphere(box, solid.sphere->center, solid.sphere->radius);
+        } else if (solid.disk) {
+            if (!solid.disk->is_endless()) add_disk(box, *solid.disk);
         } else {
             for (const glm::dvec3& p : solid.mesh.vertices)
                 if (is_finite(p)) box.add(p);
@@ -72,6 +93,7 @@ SceneNormalization find_normalization(const SceneSource& source) {
     const SceneDescription& description = *source.description;
     Box box = world_box(source);
     if (source.moving) box.add(source.moving->box);
+    if (box.empty() && !source.moving) box = box_of_planes(source);
     SceneNormalization normalization;
     if (description.frame) {
         normalization.center = description.frame->center;

@@ -8,6 +8,7 @@
 #include "cistula/numerics/vec.h"
 #include "scene/compile/meshes/mesh_solids.h"
 #include "scene/compile/scene_normalization.h"
+#include "scene/compile/solids/compile_disks.h"
 #include "scene/compile/solids/placed_bodies.h"
 #include "scene/description/platonic.h"
 #include "scene/description/rotation.h"
@@ -148,6 +149,7 @@ SourceSolid with_mesh(const SourceSolid& solid, MeshSource mesh) {
     made.body = solid.body;
     made.keep_triangles = solid.keep_triangles;
     made.object = solid.object;
+    made.smooth = solid.smooth;
     made.normals = solid.normals;
     made.in_parts = solid.in_parts;
     return made;
@@ -174,7 +176,7 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
 
     MaterialNames material_names;
     for (const MaterialDescription& material : description.materials) material_names[material.name];
-    size_t lights = description.lights.size();
+    size_t lights = description.lights.size(), disks = 0;
     for (const ObjectDescription& object : description.objects) {
         const auto number = static_cast<size_t>(&object - description.objects.data());
         if (known && !known->solids[number].empty()) {
@@ -211,6 +213,19 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
         } else if (const auto* sphere = std::get_if<SphereObject>(&object.shape)) {
             solid_fields(*sphere, FieldCheck(description, object.place, solid_keys));
             solid.sphere = sphere;
+        } else if (const auto* disk = std::get_if<DiskObject>(&object.shape)) {
+            const FieldCheck check(description, object.place, disk_shape_keys);
+            if (!disk->is_endless()) check("radius", disk->radius);
+            check("center", disk->center);
+            check("normal", disk->normal);
+            if (!(length(disk->normal) > 0)) check.refuse("the normal is 0");
+            solid.disk = disk;
+            solid.closed = false;
+            if (++disks > most_disks)
+                throw scene_error(description, object.place,
+                                  "more than " + std::to_string(most_disks) + " planes and disks",
+                                  "make some of them quads or triangles");
+            if (!disk->is_endless()) add_square(solid, {});
         } else {
             const auto& triangles = std::get<TrianglesObject>(object.shape);
             solid.mesh.vertices = triangles.vertices;
@@ -230,7 +245,7 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
     require_different_names(source);
     for (const SourceSolid& solid : source.solids) {
         const MaterialDescription& material = source.materials[solid.material];
-        if (material.texture < 0 || solid.sphere) continue;
+        if (material.texture < 0 || solid.sphere || solid.disk) continue;
         const std::string what = "the material " + material.name + " has a texture, but ";
         if (solid.polyhedron)
             throw scene_error(description, solid.place,
@@ -316,6 +331,8 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
             MovingScene{description, std::move(assets), box, still_meshes(description, source)});
     }
     source.moving = std::move(moving);
+    for (SourceSolid& solid : source.solids)
+        if (solid.disk && solid.disk->is_endless()) add_square(solid, find_normalization(source));
     source.bodies = std::make_shared<const PlacedBodies>(source);
     return source;
 }

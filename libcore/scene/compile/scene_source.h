@@ -20,6 +20,7 @@ struct SourceSolid {
     uint32_t material = 0;                    // index into SceneSource::materials
     const SolidObject* polyhedron = nullptr;  // null: the solid is `sphere` or, without one, `mesh`
     const SphereObject* sphere = nullptr;
+    const DiskObject* disk = nullptr;  // then `mesh` is a square in its plane (compile_disks.h)
     /// The triangles that are rendered, in file order; those of a closed mesh counter-clockwise seen from outside.
     MeshSource mesh;
     MeshEdges edges;              // of the mesh, if they were found when it was found to be closed; else none

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -94,6 +95,18 @@ struct SphereObject {
 /// How a mesh is shaded: without a value by the normals that it has, else by the means of those faces around a corner
 /// that meet at angles less than this, in degrees; 0: by its faces.
 using Smoothing = std::optional<double>;
+/// A sheet: a disk, or a plane without end.
+struct DiskObject {
+    glm::dvec3 center{0};  // of a plane: its point nearest to the origin
+    glm::dvec3 normal{0, 0, 1};
+    double radius = 1;  // infinite for a plane
+
+    bool is_endless() const { return radius > std::numeric_limits<double>::max(); }
+    /// The plane normal.x = offset.
+    static DiskObject plane(const glm::dvec3& normal, double offset) {
+        return {offset / dot(normal, normal) * normal, normal, std::numeric_limits<double>::infinity()};
+    }
+};
 
 /// A mesh given in the scene file. Closed meshes become solids with an inside, others are sheets seen from both sides.
 /// Convex solids with flat faces are given by planes, unless they keep their triangles.
@@ -120,7 +133,7 @@ struct MeshObject {
 struct ObjectDescription {
     std::string name;
     int material = -1;  // -1 only for a mesh that brings its own
-    std::variant<SolidObject, SphereObject, TrianglesObject, MeshObject> shape;
+    std::variant<SolidObject, SphereObject, DiskObject, TrianglesObject, MeshObject> shape;
     std::string place;  // JSON pointer of the object in the file, for messages: "/objects/2"
 };
 

@@ -60,6 +60,7 @@ std::optional<SceneDescription> without_effect(const SceneDescription& scene, ui
     }
     std::erase_if(less.objects, [&](const ObjectDescription& object) {
         if (std::holds_alternative<SphereObject>(object.shape)) return effect == effect_spheres;
+        if (std::holds_alternative<DiskObject>(object.shape)) return effect == effect_planes;
         const bool convex = std::holds_alternative<SolidObject>(object.shape);
         return effect == (convex ? effect_solids : effect_triangles);
     });

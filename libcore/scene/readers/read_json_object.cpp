@@ -1,4 +1,4 @@
-// Reads the elements of "objects": solids, quads, triangle lists and mesh files.
+// Reads the elements of "objects": solids, planes, disks, quads, triangle lists and mesh files.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -66,22 +66,24 @@ std::shared_ptr<const Polyhedron> made_of(const JsonValue& value, const Make& ma
     }
 }
 
+/// The plane [nx, ny, nz, d]; `purpose`: what its normal is for.
+BodyPlane read_plane_numbers(const JsonValue& value, const char* purpose) {
+    const std::string expected = "a plane [nx, ny, nz, d]";
+    if (value.array_size(4, expected) != 4) value.fail_expected(expected);
+    double numbers[4];
+    for (size_t k = 0; k < 4; ++k) numbers[k] = value.item(k).number({"planes", KeyType::number, vertex_key().range});
+    const glm::dvec3 normal(numbers[0], numbers[1], numbers[2]);
+    if (normal == glm::dvec3(0)) value.fail("the normal is 0", purpose);
+    return {normal, numbers[3]};
+}
+
 std::shared_ptr<const Polyhedron> read_planes(const JsonValue& value) {
     constexpr size_t most_planes = 1024;
-    const std::string expected = "a plane [nx, ny, nz, d]";
     std::vector<BodyPlane> planes;
     const size_t count = value.array_size(4, "an array of at least four planes [nx, ny, nz, d]");
     if (count > most_planes) value.fail_expected(fmt::format("an array of at most {} planes", most_planes));
-    for (size_t i = 0; i < count; ++i) {
-        const JsonValue plane = value.item(i);
-        if (plane.array_size(4, expected) != 4) plane.fail_expected(expected);
-        std::array<double, 4> numbers;
-        for (size_t k = 0; k < 4; ++k)
-            numbers[k] = plane.item(k).number({"planes", KeyType::number, vertex_key().range});
-        planes.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3]});
-        if (planes.back().normal == glm::dvec3(0))
-            plane.fail("the normal is 0", "give the direction in which the face looks");
-    }
+    for (size_t i = 0; i < count; ++i)
+        planes.push_back(read_plane_numbers(value.item(i), "give the direction in which the face looks"));
     return made_of(value, [&] { return body_of_planes("convex solid", planes); });
 }
 
@@ -143,6 +145,26 @@ void read_solid(const JsonValue& value, const ObjectContext& context, ObjectDesc
     keys.finish();
     refuse_texture(keys, context, object, "a solid has no uv for it; use triangles with 'uvs' or a mesh");
     object.shape = solid;
+}
+
+void read_plane(const JsonValue& value, const ObjectContext& context, ObjectDescription& object) {
+    JsonObject keys(value, plane_keys);
+    read_common(keys, context, object);
+    const BodyPlane plane = read_plane_numbers(keys.at("plane"), "give the direction across the plane");
+    keys.finish();
+    object.shape = DiskObject::plane(plane.normal, plane.offset);
+}
+
+void read_disk(const JsonValue& value, const ObjectContext& context, ObjectDescription& object) {
+    JsonObject keys(value, disk_keys);
+    read_common(keys, context, object);
+    JsonObject shape(keys.at("disk"), disk_shape_keys);
+    DiskObject disk;
+    disk_fields(disk, [&](std::string_view key, auto& field) { shape.read(key, field); });
+    if (disk.normal == glm::dvec3(0)) shape.fail("normal", "the normal is 0", "give the direction across the disk");
+    shape.finish();
+    keys.finish();
+    object.shape = disk;
 }
 
 void read_quad(const JsonValue& value, const ObjectContext& context, ObjectDescription& object) {
@@ -240,13 +262,16 @@ struct Form {
     void (*read)(const JsonValue&, const ObjectContext&, ObjectDescription&);
 };
 
-const KeyTable* const sheet_tables[] = {&quad_keys, &triangles_keys, &mesh_keys};
+const KeyTable* const sheet_tables[] = {&plane_keys, &disk_keys, &quad_keys, &triangles_keys, &mesh_keys};
 const Form forms[] = {
     {"solid", solid_tables, read_solid},
-    {"quad", std::span(sheet_tables).subspan(0, 1), read_quad},
-    {"triangles", std::span(sheet_tables).subspan(1, 1), read_triangles},
-    {"mesh", std::span(sheet_tables).subspan(2, 1), read_mesh},
+    {"plane", std::span(sheet_tables).subspan(0, 1), read_plane},
+    {"disk", std::span(sheet_tables).subspan(1, 1), read_disk},
+    {"quad", std::span(sheet_tables).subspan(2, 1), read_quad},
+    {"triangles", std::span(sheet_tables).subspan(3, 1), read_triangles},
+    {"mesh", std::span(sheet_tables).subspan(4, 1), read_mesh},
 };
+const std::string known_forms = "'solid', 'plane', 'disk', 'quad', 'triangles' and 'mesh'";
 
 /// Throws for an object with no form's key, most likely because it is misspelled.
 [[noreturn]] void fail_without_form(const JsonValue& value) {
@@ -258,7 +283,7 @@ const Form forms[] = {
     for (const auto& member : value.json().items())
         if (member.key() != comment_key && std::find(known.begin(), known.end(), member.key()) == known.end())
             value.fail_at(value.place_of(member.key()), "unknown key", suggestion(member.key(), known, "keys"));
-    value.fail("expected one of the keys 'solid', 'quad', 'triangles' and 'mesh'");
+    value.fail("expected one of the keys " + known_forms);
 }
 
 }  // namespace
@@ -269,8 +294,7 @@ ObjectDescription read_json_object(const JsonValue& value, const ObjectContext& 
     for (const Form& form : forms) {
         if (!value.json().contains(form.key)) continue;
         if (chosen)
-            value.fail(fmt::format("expected one of 'solid', 'quad', 'triangles' and 'mesh', found both '{}' and '{}'",
-                                   chosen->key, form.key));
+            value.fail(fmt::format("expected one of {}, found both '{}' and '{}'", known_forms, chosen->key, form.key));
         chosen = &form;
     }
     if (!chosen) fail_without_form(value);

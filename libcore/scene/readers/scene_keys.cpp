@@ -224,6 +224,16 @@ constexpr Key edge_lights_list[] = {
     text("group"),
 };
 
+constexpr Key plane_list[] = {text("name"), other("plane", required), text("material", required)};
+
+constexpr Key disk_list[] = {text("name"), other("disk", required), text("material", required)};
+
+constexpr Key disk_shape_list[] = {
+    point("center", anywhere, "[0, 0, 0]"),
+    point("normal", anywhere, "[0, 0, 1]"),
+    number("radius", size, "1"),
+};
+
 constexpr Key quad_list[] = {text("name"), other("quad", required), text("material", required)};
 
 constexpr Key triangles_list[] = {
@@ -285,6 +295,9 @@ constexpr KeyTable convex_keys{"convex", convex_list};
 constexpr KeyTable prism_keys{"prism", prism_list};
 constexpr KeyTable edge_lights_keys{"edge_lights", edge_lights_list};
 constexpr KeyTable quad_keys{"quad", quad_list};
+constexpr KeyTable plane_keys{"plane", plane_list};
+constexpr KeyTable disk_keys{"disk", disk_list};
+constexpr KeyTable disk_shape_keys{"disk_shape", disk_shape_list};
 constexpr KeyTable triangles_keys{"triangles", triangles_list};
 constexpr KeyTable triangle_list_keys{"triangle_list", triangle_list_list};
 constexpr KeyTable mesh_keys{"mesh", mesh_list};
@@ -293,28 +306,14 @@ constexpr KeyTable frame_keys{"frame", frame_list};
 constexpr KeyTable keyed_keys{"keyed", keyed_list};
 
 std::span<const KeyTable* const> all_key_tables() {
-    static constexpr const KeyTable* tables[] = {&scene_keys,
-                                                 &film_keys,
-                                                 &camera_keys,
-                                                 &path_keys,
-                                                 &cylindrical_keys,
-                                                 &texture_file_keys,
-                                                 &texture_checker_keys,
-                                                 &sky_gradient_keys,
-                                                 &sky_picture_keys,
-                                                 &material_keys,
-                                                 &solid_keys,
-                                                 &box_keys,
-                                                 &convex_keys,
-                                                 &prism_keys,
-                                                 &edge_lights_keys,
-                                                 &quad_keys,
-                                                 &triangles_keys,
-                                                 &triangle_list_keys,
-                                                 &mesh_keys,
-                                                 &light_keys,
-                                                 &frame_keys,
-                                                 &keyed_keys};
+    static constexpr const KeyTable* tables[] = {
+        &scene_keys,         &film_keys,         &camera_keys,          &path_keys,
+        &cylindrical_keys,   &texture_file_keys, &texture_checker_keys, &sky_gradient_keys,
+        &sky_picture_keys,   &material_keys,     &solid_keys,           &box_keys,
+        &convex_keys,        &prism_keys,        &edge_lights_keys,     &quad_keys,
+        &plane_keys,         &disk_keys,         &disk_shape_keys,      &triangles_keys,
+        &triangle_list_keys, &mesh_keys,         &light_keys,           &frame_keys,
+        &keyed_keys};
     return tables;
 }
 

@@ -57,8 +57,8 @@ struct KeyTable {
 
 extern const KeyTable scene_keys, film_keys, camera_keys, path_keys, cylindrical_keys, texture_file_keys,
     texture_checker_keys, sky_gradient_keys, sky_picture_keys, material_keys, solid_keys, sphere_keys, box_keys,
-    convex_keys, prism_keys, edge_lights_keys, quad_keys, triangles_keys, triangle_list_keys, mesh_keys, light_keys,
-    frame_keys, keyed_keys;
+    convex_keys, prism_keys, edge_lights_keys, quad_keys, plane_keys, disk_keys, disk_shape_keys, triangles_keys,
+    triangle_list_keys, mesh_keys, light_keys, frame_keys, keyed_keys;
 
 /// Calls visit(key, field) for each field of a material that stands under a key of its own, in the order of these.
 template <class Material, class Visit>
@@ -92,6 +92,14 @@ void solid_fields(Solid& solid, const Visit& visit) {
     visit("center", solid.center);
     visit("radius", solid.radius);
     visit("rotate", solid.rotation);
+}
+
+/// Calls visit(key, field) for each field of a disk.
+template <class Disk, class Visit>
+void disk_fields(Disk& disk, const Visit& visit) {
+    visit("center", disk.center);
+    visit("normal", disk.normal);
+    visit("radius", disk.radius);
 }
 
 /// Calls visit(key, field) for each field of a mesh.

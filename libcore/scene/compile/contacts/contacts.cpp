@@ -308,6 +308,8 @@ class ContactSearch {
         for (uint32_t i = 0; i < faces_.size(); ++i)
             if (may_overlap_itself(faces_[i].solid) && faces_[i].parts.size() > 1 && overlapping(i, i))
                 wanted[sets.root(i)] = true;
+        for (uint32_t i = 0; i < faces_.size(); ++i)
+            if (source_.solids[faces_[i].solid].disk) wanted[sets.root(i)] = true;  // alone, too
         for (uint32_t i = 0; i < faces_.size(); ++i) {
             if (sets.root(i) != i || !wanted[i]) continue;
             const PlaneSets::Set& set = sets.set(i);
@@ -413,7 +415,7 @@ class ContactSearch {
         }
         list_near();
         forget_joined();
-        for (const Pair& pair : pairs_) contacts_.pairs += in_contact(pair);
+        for (const Pair& pair : pairs_) contacts_.pairs += in_contact(pair) && !of_one_disk(pair);
         const auto earliest = std::min_element(pairs_.begin(), pairs_.end(),
                                                [&](const Pair& a, const Pair& b) { return order_of(a) < order_of(b); });
         if (earliest != pairs_.end() && in_contact(*earliest)) {
@@ -433,6 +435,10 @@ class ContactSearch {
         });
     }
 
+    bool of_one_disk(const Pair& pair) const {
+        const uint32_t solid = faces_[pair.first].solid;
+        return source_.solids[solid].disk && faces_[pair.second].solid == solid;
+    }
     bool in_contact(const Pair& pair) const {
         return plane_[pair.first] != no_plane && plane_[pair.first] == plane_[pair.second];
     }
@@ -446,12 +452,25 @@ class ContactSearch {
             if (plane_[i] != no_plane) contacts_.solids[faces_[j].solid].near.push_back(plane_[i]);
             if (plane_[j] != no_plane) contacts_.solids[faces_[i].solid].near.push_back(plane_[j]);
         }
+        list_near_endless();
         for (SolidContacts& solid : contacts_.solids) {
             std::sort(solid.near.begin(), solid.near.end());
             solid.near.erase(std::unique(solid.near.begin(), solid.near.end()), solid.near.end());
             std::sort(solid.parts.begin(), solid.parts.end(),
                       [](const PartOnPlane& a, const PartOnPlane& b) { return a.part < b.part; });
         }
+    }
+
+    /// Planes without end meet one another, if not in the scene's box.
+    void list_near_endless() {
+        std::vector<uint32_t> solids, planes;
+        for (uint32_t i = 0; i < source_.solids.size(); ++i)
+            if (const DiskObject* disk = source_.solids[i].disk; disk && disk->is_endless()) {
+                solids.push_back(i);
+                planes.insert(planes.end(), contacts_.solids[i].near.begin(), contacts_.solids[i].near.end());
+            }
+        for (const uint32_t i : solids)
+            contacts_.solids[i].near.insert(contacts_.solids[i].near.end(), planes.begin(), planes.end());
     }
 
     const SceneSource& source_;

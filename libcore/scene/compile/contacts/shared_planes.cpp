@@ -65,6 +65,7 @@ void list_shared_planes(CompiledScene<Real>& scene, const PlacedBodies& bodies, 
     if (scene.shared_planes.empty()) return;
     uint32_t triangles = 0;
     for (const Cluster<Real>& cluster : scene.clusters) triangles += cluster.count;
+    triangles += triangles_of_disk * uint32_t(bodies.disks.size());
     scene.triangle_planes.assign(triangles, no_plane);
     for (uint32_t i = 0; i < scene.solids.size(); ++i) {
         Solid& solid = scene.solids[i];

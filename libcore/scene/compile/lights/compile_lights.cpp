@@ -121,6 +121,18 @@ void find_convex_incidents(const std::vector<NormalizedLight>& lights, const Pla
     }
 }
 
+void find_disk_incidents(const std::vector<NormalizedLight>& lights, const PlacedBodies& bodies,
+                         const std::vector<Solid>& solids, double least, LightFaces& faces) {
+    for (size_t i = 0; i < lights.size(); ++i)
+        for (const PlacedDisk& disk : bodies.disks) {
+            if (!lights[i].lights()) break;
+            const double range = point_tolerance(bodies.contacts.solids[disk.solid].reach, disk.equation,
+                                                 lights[i].position, lights[i].half_unit, bodies.sizes[disk.solid].box);
+            if (disk.distance(lights[i].position) <= max_or_second(range, least))
+                faces[i].push_back({{disk.solid, solids[disk.solid].first_triangle}, disk.equation});
+        }
+}
+
 void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh,
                              const Groups& groups, const Tree& tree, uint32_t solid, uint32_t first_triangle,
                              const ContactReach& reach, double least, LightFaces& faces) {

@@ -55,6 +55,10 @@ using LightFaces = std::vector<std::vector<LightFace>>;
 void find_convex_incidents(const std::vector<NormalizedLight>& lights, const PlacedBodies& bodies, double least,
                            LightFaces& faces);
 
+/// Adds the disks on which lights lie. `solids`: the scene's, which number their faces.
+void find_disk_incidents(const std::vector<NormalizedLight>& lights, const PlacedBodies& bodies,
+                         const std::vector<Solid>& solids, double least, LightFaces& faces);
+
 /// Adds a mesh's triangles on which lights lie, found through the tree over their groups. `mesh`: in double.
 void find_triangle_incidents(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh,
                              const Groups& groups, const Tree& tree, uint32_t solid, uint32_t first_triangle,

@@ -143,6 +143,18 @@ std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& l
     return distances;
 }
 
+std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& lights, const PlacedDisk& disk,
+                                           const LightFaces& faces, double extent, double rounding) {
+    std::vector<LightDistance> distances;
+    for (uint32_t i = 0; i < lights.size(); ++i) {
+        const double distance = disk.distance(lights[i].position);
+        const bool on = !faces[i].empty() && distance <= in_plane * rounding;
+        if (disk.is_endless() ? lights[i].falloff && lights[i].lights() : is_near(lights[i], distance, extent))
+            distances.push_back({i, (on ? incident_distance * extent : distance) - rounding});
+    }
+    return distances;
+}
+
 std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh,
                                            const Groups& groups, const Tree& tree, uint32_t solid,
                                            uint32_t first_triangle, const LightFaces& faces, double extent,

@@ -30,6 +30,10 @@ std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& l
 std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& lights, const PlacedBall& ball,
                                            double extent, double rounding);
 
+/// The distances of lights from a disk; of a plane without end all, wherever they are.
+std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& lights, const PlacedDisk& disk,
+                                           const LightFaces& faces, double extent, double rounding);
+
 /// The distances of lights from a mesh's triangles, found through the tree over their groups; they may be stated as
 /// half of what they are.
 std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& lights, const NormalizedMesh& mesh,

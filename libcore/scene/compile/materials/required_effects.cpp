@@ -64,7 +64,8 @@ struct Facts {
 struct Use {
     const Facts& facts;
     const MaterialDescription& material;
-    bool closed, convex, round, smooth;
+    bool closed, smooth;
+    uint32_t primitive;
 };
 
 /// Whether some light may pass a material's faces: perhaps too little for numbers of float, but no less.
@@ -153,14 +154,16 @@ const MaterialRow material_rows[] = {
      [](const Use&) -> Text { return "absorbs light"; }, "no solid absorbs"},
     {effect_tint, Premise::passing_rays, is_tinted, [](const Use&) -> Text { return "has a tint"; },
      "what passes keeps its color"},
-    {effect_solids, Premise::none, [](const Use& u) { return u.convex && !u.round; },
+    {effect_solids, Premise::none, [](const Use& u) { return u.primitive == effect_solids; },
      [](const Use&) -> Text { return "is on a convex solid"; }, "there is no convex solid"},
-    {effect_spheres, Premise::none, [](const Use& u) { return u.round; },
+    {effect_spheres, Premise::none, [](const Use& u) { return u.primitive == effect_spheres; },
      [](const Use&) -> Text { return "is on a sphere"; }, "there is no solid sphere"},
     {effect_smooth, Premise::none, [](const Use& u) { return u.smooth; },
      [](const Use&) -> Text { return "is on a smooth mesh"; }, "no mesh has normals that differ from its faces'"},
-    {effect_triangles, Premise::none, [](const Use& u) { return !u.convex; },
+    {effect_triangles, Premise::none, [](const Use& u) { return u.primitive == effect_triangles; },
      [](const Use&) -> Text { return "is on triangles"; }, "there is neither mesh nor sheet"},
+    {effect_planes, Premise::none, [](const Use& u) { return u.primitive == effect_planes; },
+     [](const Use&) -> Text { return "is on a plane or a disk"; }, "there is neither plane nor disk"},
     {effect_insides, Premise::none, [](const Use& u) { return u.closed && passes(u.material); },
      [](const Use&) -> Text { return "lets rays into a closed body"; },
      "no closed body lets rays pass; a camera in one adds it"},
@@ -185,7 +188,7 @@ const LightRow light_rows[] = {
 /// A sentence with the first material that requires the effect; empty if none does.
 Text cause(const MaterialRow& row, const std::vector<MaterialUse>& uses, const Facts& facts) {
     for (const MaterialUse& one : uses) {
-        const Use use{facts, *one.material, one.closed, one.convex, one.round, one.smooth};
+        const Use use{facts, *one.material, one.closed, one.smooth, one.primitive};
         if (row.needed(use)) return "material " + use.material.name + " of " + one.place + " " + row.because(use);
     }
     return "";
@@ -204,7 +207,7 @@ Facts find_facts(const SceneDescription& scene, const std::vector<MaterialUse>& 
     facts.ambient = any(scene.ambient);
     for (const SceneLight& light : lights) facts.point_light = facts.point_light || light.lights;
     for (const MaterialUse& one : uses) {
-        const Use use{facts, *one.material, one.closed, one.convex, one.round, one.smooth};
+        const Use use{facts, *one.material, one.closed, one.smooth, one.primitive};
         if (facts.point_light && (shows_diffuse(use) || shows_specular(use))) facts.shown_light = true;
         if (passes(use.material)) facts.passing_rays = true;
     }

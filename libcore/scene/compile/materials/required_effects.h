@@ -14,11 +14,10 @@ namespace cistula {
 /// A material in use: the object that uses it and the kind of that object.
 struct MaterialUse {
     const MaterialDescription* material = nullptr;
-    std::string place;    // "/objects/2"
-    bool closed = true;   // it has an inside
-    bool convex = false;  // a solid given by planes, or a sphere; else triangles
-    bool round = false;   // a sphere
-    bool smooth = false;  // triangles with normals of their own
+    std::string place;                      // "/objects/2"
+    bool closed = true;                     // it has an inside
+    uint32_t primitive = effect_triangles;  // the effect of what it is made of
+    bool smooth = false;                    // triangles with normals of their own
 };
 
 /// The reasons for all effects, in bit order. `uses` in file order; the lights considered give light or are visible.

@@ -56,6 +56,8 @@ PlacedBodies::PlacedBodies(const SceneSource& source) : normalization(find_norma
     source.stop.check();
     contacts = find_contacts(source, normalization, polyhedra, sizes);
     move_vertices(polyhedra, contacts);
+    for (uint32_t i = 0; i < count; ++i)
+        if (source.solids[i].disk) disks.emplace_back(source, i, normalization, contacts);
     tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
         source.stop.check();
         if (!source.solids[i].polyhedron) by_planes[i] = convex_mesh(source, i, normalization, contacts);

@@ -10,6 +10,7 @@
 #include "scene/compile/contacts/contacts.h"
 #include "scene/compile/meshes/normalized_mesh.h"
 #include "scene/compile/solids/compile_balls.h"
+#include "scene/compile/solids/compile_disks.h"
 #include "scene/compile/solids/compile_solids.h"
 
 namespace cistula {
@@ -20,6 +21,7 @@ struct PlacedBodies {
     Contacts contacts;
     std::vector<ConvexSolid> convex;  // the solids that are given by planes, by number; in contact as contacts say
     std::vector<PlacedBall> balls;    // by number
+    std::vector<PlacedDisk> disks;    // by number
 
     explicit PlacedBodies(const SceneSource& source);
 
