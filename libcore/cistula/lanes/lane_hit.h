@@ -19,9 +19,10 @@ struct KeyFormat<Lanes<T, n>> {
     CISTULA_INLINE static int32_t of_single(uint64_t key) {
         return without_face(key_kind(key), key_solid(key)) | int32_t(key_face(key));
     }
-    /// The key of a lane as that of a single ray.
+    /// The key of a lane as that of a single ray; of no crossing yet, 0, as that of none.
     CISTULA_INLINE static uint64_t of_lane(const Key& key, int lane) {
         const uint32_t one = uint32_t(key[lane]);
+        if (one == 0) return 0;
         const CrossingKind kind = CrossingKind(one >> LaneKey::kind_bit);
         const uint32_t place = one >> LaneKey::solid_bit & LaneKey::solids;
         return make_key(kind, kind == CrossingKind::sheet ? place ^ LaneKey::solids : place, one & LaneKey::faces);
@@ -62,7 +63,7 @@ CISTULA_INLINE Lanes<T, n> entries_of(const Span<uint32_t>& table, const Lanes<T
 
 /// The key of a single ray with other numbers of solids.
 CISTULA_INLINE uint64_t renumbered(uint64_t key, const uint32_t* numbers) {
-    return make_key(key_kind(key), numbers[key_solid(key)], key_face(key));
+    return key == 0 ? 0 : make_key(key_kind(key), numbers[key_solid(key)], key_face(key));
 }
 
 /// A lane of a ray as a single ray.

@@ -269,9 +269,9 @@ struct SkyStop {
 /// What is around a scene in place of a background of one color.
 struct Sky {
     SkyKind kind = SkyKind::none;
-    uint32_t texture = 0;  // of a picture
-    double scale = 1;      // of its texels
-    Vec3<double> axes[3];  // x, y and z of a picture, unit; a gradient's axis is the last
+    uint32_t texture = 0;                                      // of a picture
+    double scale = 1;                                          // of its texels
+    Vec3<double> axes[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};  // x, y, z of a picture, unit; a gradient's is the last
 };
 
 /// Maximum depth of a tree, and so the size of traversal stacks.

@@ -1,7 +1,6 @@
 // Rays that start where bodies share a plane, or on balls: on which side of every plane near the start, and inside
 // which solids (docs/rules.md, 11, lines 8 to 15; 14, lines 12 to 14). What the parent ray knows decides, not the
-// rounded place of the start; of meshes, what lies ahead of it. And those toward lights from smooth meshes (16, line
-// 8).
+// rounded place of the start; of meshes, what lies ahead of it. And shadow rays of smooth meshes (17, line 8).
 #pragma once
 
 #include "cistula/geometry/disk.h"

@@ -118,6 +118,8 @@ void find_corner_normals(SceneSource& source, std::span<SourceSolid> solids,
         solid.normals = smooth ? normals_by_angle(solid.mesh, solid.edges, *smooth)
                                : given_normals(solid.mesh, turned[size_t(&solid - solids.data())]);
         const size_t of_no_use = settle(solid.mesh, solid.normals);
+        solid.mesh.normals = {};
+        solid.mesh.owned_normals = {};
         if (!smooth) replaced += of_no_use, corners += 3 * solid.mesh.triangles.size();
         if (solid.normals.empty()) continue;
         if (solid.edges.next.empty()) solid.edges = link_edges(solid.mesh);
