@@ -314,7 +314,7 @@ std::vector<std::vector<SourceSolid>> still_meshes(const SceneDescription& descr
     std::vector<std::vector<SourceSolid>> solids(description.objects.size());
     const std::vector<size_t>& moving = description.motion->objects;
     for (const SourceSolid& solid : source.solids)
-        if (solid.is_mesh() && description.objects[solid.object].material >= 0 &&
+        if (solid.is_mesh() && !solid.disk && description.objects[solid.object].material >= 0 &&
             !std::binary_search(moving.begin(), moving.end(), solid.object))
             solids[solid.object].push_back(with_mesh(solid, solid.mesh.copy()));
     return solids;
