@@ -44,7 +44,8 @@ CISTULA_INLINE void closest_balls(const BallColumns<T>& balls, const Ray<Lanes<T
                                   Hit<Lanes<T, n>>& best) {
     using Real = Lanes<T, n>;
     using Index = IndexOf<Real>;
-    const Index own = select(ray.from_solid < 31, Index(1) << (ray.from_solid & 31), Index(0));
+    const Index own =
+        select(ray.from_solid < Index(int(LaneScene<T>::most_with_bits)), Index(1) << (ray.from_solid & 31), Index(0));
     const Index around = ray.media.bits | own;
     const Real least = max_or_second(ray.after.t, Real(0));
     Real nearest = RealTraits<Real>::infinity;

@@ -269,13 +269,12 @@ class Compiler {
 
     /// Whether a disk comes near a convex solid in a box: lines in a ball that only touches it must know of it, too
     /// (docs/rules.md, 14, line 14).
-    bool meets_disk(const SceneView<Real>& view, uint32_t index, const PaddedBox& box) const {
-        const dvec3 low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]);
+    bool meets_disk(const SceneView<Real>& view, uint32_t index, const Box& box) const {
         const bool ball = is_ball(view.solids[index]);
-        const double reach =
-            touching + (ball ? double(view.balls[view.solids[index].first_slab].radius) : 0.5 * length(high - low));
+        const double reach = touching + (ball ? double(view.balls[view.solids[index].first_slab].radius)
+                                              : 0.5 * length(box.high - box.low));
         return std::any_of(bodies_.disks.begin(), bodies_.disks.end(),
-                           [&](const PlacedDisk& disk) { return disk.distance(0.5 * (low + high)) <= reach; });
+                           [&](const PlacedDisk& disk) { return disk.distance(0.5 * (box.low + box.high)) <= reach; });
     }
 
     /// Finds solids inside of which nothing else is. An optimization, skipped for scenes with very many pairs.
@@ -283,25 +282,19 @@ class Compiler {
         const SceneView<Real> view = scene_.view();
         const size_t primitives = view.convex.size + view.clusters.size;
         if (view.convex.empty() || view.convex.size * primitives > most_pairs) return;
-        std::vector<PaddedBox> boxes;
-        for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(primitive_box(view, p));
+        std::vector<Box> boxes;
+        for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(box_of(primitive_box(view, p)));
         for (uint32_t a = 0; a < view.convex.size; ++a) {
             bool isolated = !meets_disk(view, view.convex[a], boxes[a]);
             for (uint32_t b = 0; b < primitives && isolated; ++b)
-                isolated = a == b || are_apart(boxes[a], boxes[b]) || is_outside_ball(view, a, b, boxes[b]);
+                isolated = a == b || !near(boxes[a], boxes[b], 0) || is_outside_ball(view, a, b, boxes[b]);
             scene_.solids[view.convex[a]].isolated = isolated ? 1 : 0;
         }
     }
 
-    static bool are_apart(const PaddedBox& a, const PaddedBox& b) {
-        bool apart = false;
-        for (int k = 0; k < 3; ++k) apart |= a.high[k] < b.low[k] || b.high[k] < a.low[k];
-        return apart;
-    }
-
     /// Whether nothing of primitive b, in a box, is inside the convex solid a, which is a ball: b's box is outside, or
     /// b is a ball that at most touches it (docs/rules.md, 14, line 9).
-    bool is_outside_ball(const SceneView<Real>& view, uint32_t a, uint32_t b, const PaddedBox& box) const {
+    bool is_outside_ball(const SceneView<Real>& view, uint32_t a, uint32_t b, const Box& box) const {
         const auto ball_of = [&](uint32_t p) -> const Ball<Real>* {
             const Solid* solid = p < view.convex.size ? &view.solids[view.convex[p]] : nullptr;
             return solid && is_ball(*solid) ? &view.balls[solid->first_slab] : nullptr;
@@ -313,8 +306,7 @@ class Compiler {
         if (const Ball<Real>* other = ball_of(b))
             return length(dvec3(other->center) - center) >=
                    radius + double(other->radius) - double(incidence<Real>) * double(view.extent);
-        return distance_to_box(Box{{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}},
-                               center) > radius;
+        return distance_to_box(box, center) > radius;
     }
 
     /// Finds the smooth meshes of which anything else, or another part, may lie within a bulge.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/box.h"
 #include "base/error.h"
 #include "cistula/model/scene_view.h"
 #include "cistula/numerics/portable.h"
@@ -114,6 +115,9 @@ struct PaddedBox {
 };
 template <class Real>
 PaddedBox primitive_box(const SceneView<Real>& scene, uint32_t primitive);
+inline Box box_of(const PaddedBox& box) {
+    return {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}};
+}
 
 /// A vector's elements, which must outlive the span.
 template <class T>

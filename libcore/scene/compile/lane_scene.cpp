@@ -54,6 +54,7 @@ OwnedLaneScene<Real>::OwnedLaneScene(const SceneView<Real>& from, uint32_t most_
     number_solids(from, most_with_bits);
     copy_parts();
     find_tree();
+    find_columns();
     fill_tables();
 }
 
@@ -159,8 +160,7 @@ void OwnedLaneScene<Real>::copy_parts() {
 template <class Real>
 void OwnedLaneScene<Real>::find_tree() {
     scene_.loops = takes_loop(scene_) && !scene_.meshes.any;  // of a mesh, nothing but boxes tells what a ray misses
-    find_columns();
-    if (takes_loop(scene_) && !scene_.meshes.any) {
+    if (scene_.loops) {
         scene_.tree = {};
         scene_.tree_items = {};
         return;

@@ -131,29 +131,28 @@ void require_different_names(const SceneSource& source) {
 
 }  // namespace
 
+SourceSolid SourceSolid::with_mesh(MeshSource triangles) const {
+    SourceSolid made;
+    made.name = name;
+    made.place = place;
+    made.material = material;
+    made.mesh = std::move(triangles);
+    made.closed = closed;
+    made.thickness = thickness;
+    made.body = body;
+    made.keep_triangles = keep_triangles;
+    made.object = object;
+    made.smooth = smooth;
+    made.normals = normals;
+    made.in_parts = in_parts;
+    return made;
+}
+
 std::string name_of(const SourceSolid& solid) {
     return given_name(solid.name, solid.place);
 }
 
 namespace {
-
-/// A solid that is a mesh, with this for its triangles; their edges are found again where they are needed.
-SourceSolid with_mesh(const SourceSolid& solid, MeshSource mesh) {
-    SourceSolid made;
-    made.name = solid.name;
-    made.place = solid.place;
-    made.material = solid.material;
-    made.mesh = std::move(mesh);
-    made.closed = solid.closed;
-    made.thickness = solid.thickness;
-    made.body = solid.body;
-    made.keep_triangles = solid.keep_triangles;
-    made.object = solid.object;
-    made.smooth = solid.smooth;
-    made.normals = solid.normals;
-    made.in_parts = solid.in_parts;
-    return made;
-}
 
 /// A scene whose solids are not placed in its frame yet. `known`: has those that do not change; null: none.
 SceneSource gathered_parts(const SceneDescription& description, SceneAssets assets, StopSignal stop,
@@ -181,7 +180,7 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
         const auto number = static_cast<size_t>(&object - description.objects.data());
         if (known && !known->solids[number].empty()) {
             for (const SourceSolid& solid : known->solids[number])
-                source.solids.push_back(with_mesh(solid, solid.mesh.borrowed()));
+                source.solids.push_back(solid.with_mesh(solid.mesh.borrowed()));
             continue;
         }
         if (object.material >= static_cast<int>(description.materials.size()))
@@ -316,7 +315,7 @@ std::vector<std::vector<SourceSolid>> still_meshes(const SceneDescription& descr
     for (const SourceSolid& solid : source.solids)
         if (solid.is_mesh() && !solid.disk && description.objects[solid.object].material >= 0 &&
             !std::binary_search(moving.begin(), moving.end(), solid.object))
-            solids[solid.object].push_back(with_mesh(solid, solid.mesh.copy()));
+            solids[solid.object].push_back(solid.with_mesh(solid.mesh.copy()));
     return solids;
 }
 

@@ -36,6 +36,8 @@ struct SourceSolid {
 
     /// Whether it is given by triangles, of which planes may be made.
     bool is_mesh() const { return !polyhedron && !sphere; }
+    /// A mesh of the same object with these triangles; their edges are found again where they are needed.
+    SourceSolid with_mesh(MeshSource triangles) const;
 };
 
 /// The solid's name, or one after its place in the file, "object3", if the file gives none.

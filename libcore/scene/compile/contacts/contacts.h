@@ -56,7 +56,7 @@ struct Contacts {
 /// grow with them: many objects in one place have as many as the square of their number.
 inline constexpr size_t most_near_pairs = 16'000'000;
 
-/// Finds the contacts of a scene. `polyhedra`: the planes of its Platonic solids, in order; `sizes`: of each solid's
+/// Finds the contacts of a scene. `polyhedra`: the planes of its polyhedra, in order; `sizes`: of each solid's
 /// mesh. Throws Error for more than most_near_pairs.
 Contacts find_contacts(const SceneSource& source, const SceneNormalization& normalization,
                        const std::vector<ConvexSolid>& polyhedra, const std::vector<MeshSize>& sizes);

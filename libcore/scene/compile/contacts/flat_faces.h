@@ -86,7 +86,7 @@ std::array<glm::dvec3, 3> points_of(const ContactBody& body, uint32_t facet);
 /// Makes a face of each triangle of a mesh.
 void add_triangles(const ContactBody& body, const std::vector<uint32_t>& triangles, std::vector<FlatFace>& faces);
 
-/// The faces of a Platonic solid; if it was moved, as its corners say.
+/// The faces of a polyhedron; if it was moved, as its corners say.
 void add_polyhedron_faces(const ContactBody& body, const SolidObject& solid, std::vector<FlatFace>& faces);
 
 /// The largest distance of a face's corners from a plane.

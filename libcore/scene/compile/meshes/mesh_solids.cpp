@@ -209,16 +209,9 @@ void add_mesh_solids(SceneSource& source, SourceSolid solid, MeshPieces pieces) 
             turned[pieces.closed ? pieces.solid[t] : 0].push_back(is_turned);
         }
     for (uint32_t body = 0; count > 1 && body < count; ++body) {
-        SourceSolid& own = source.solids.emplace_back();
-        own.name = solid.name;
-        own.place = solid.place;
-        own.object = solid.object;
-        own.material = solid.material;
-        own.mesh = part_of(solid.mesh, triangles[body]);
+        SourceSolid& own = source.solids.emplace_back(solid.with_mesh(part_of(solid.mesh, triangles[body])));
         own.thickness = pieces.thickness[body];
         own.body = body;
-        own.keep_triangles = solid.keep_triangles;
-        own.smooth = solid.smooth;
     }
     if (count == 1) {
         if (!all_kept || any_turned) {

@@ -40,13 +40,6 @@ std::vector<uint32_t> find_families(const std::vector<PlacedBall>& balls, double
     return first;
 }
 
-/// The padded box of a cluster.
-template <class Real>
-Box cluster_box_of(const SceneView<Real>& scene, uint32_t cluster) {
-    const PaddedBox box = primitive_box(scene, scene.convex.size + cluster);
-    return {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}};
-}
-
 /// Whether a ball's surface may come within `reach` of what is in a box.
 bool is_near(const PlacedBall& ball, const Box& box, double reach) {
     double farthest = 0;
@@ -68,7 +61,7 @@ class NearBalls {
             if (planes[i]) primitives.push_back(padded_primitive(boxes[i], reach(), i));
         for (uint32_t i = 0; i < scene.clusters.size(); ++i) {
             if (scene.solids[scene.clusters[i].solid].kind != SolidKind::mesh) continue;
-            cluster_boxes_[i] = cluster_box_of(view, i);
+            cluster_boxes_[i] = box_of(primitive_box(view, view.convex.size + i));
             primitives.push_back(padded_primitive(cluster_boxes_[i], 0, solids_ + i));
         }
         tree_ = build_tree(primitives, 0);
