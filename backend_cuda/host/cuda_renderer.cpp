@@ -60,6 +60,10 @@ class CudaRenderer : public Renderer {
             else if (is_announced_)
                 expected_.pop_front();
             FramePlan fresh = planned(camera, settings, others_follow);
+            if (!has_kernel(fresh)) {
+                take_tree();
+                fresh = planned(camera, settings, others_follow);
+            }
             reserve(fresh);
             begin(std::move(fresh));
         }
@@ -184,6 +188,9 @@ class CudaRenderer : public Renderer {
         return plan;
     }
 
+    /// Whether there is a kernel of the mask for the path that the scene has.
+    bool has_kernel(const FramePlan& plan) const { return path_ != DevicePath::ball_loop || plan.mask == ball_mask; }
+
     /// Divides a frame into parts of `strips` strips for each device, at most.
     static void divide(FramePlan& plan, int strips) {
         plan.part_strips = std::min(strips, plan.strips_per_device());
@@ -240,7 +247,7 @@ class CudaRenderer : public Renderer {
             const auto first = workers_.begin() + next.first_device;
             if (std::any_of(first, first + next.devices, is_full)) return;
             const auto is_ready = [&](const auto& worker) { return worker->is_ready(part_pixels(next), next); };
-            if (!std::all_of(workers_.begin(), workers_.end(), is_ready)) return;
+            if (!has_kernel(next) || !std::all_of(workers_.begin(), workers_.end(), is_ready)) return;
             begin(std::move(next));
             expected_.pop_front();
         }

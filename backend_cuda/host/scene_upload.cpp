@@ -8,9 +8,8 @@ namespace cistula {
 
 template <class Real>
 DevicePath path_for(const SceneView<Real>& scene) {
-    constexpr uint32_t most_primitives = 16;
-    if (scene.convex.size + scene.clusters.size > most_primitives) return DevicePath::tree;
-    return fits_constant_scene(scene) ? DevicePath::plain_loop : DevicePath::tree;
+    if ((scene.balls.empty() && !takes_loop(scene)) || !fits_constant_scene(scene)) return DevicePath::tree;
+    return scene.balls.empty() ? DevicePath::plain_loop : DevicePath::ball_loop;
 }
 
 template <class Real>
@@ -21,7 +20,7 @@ SceneUpload<Real>::SceneUpload(const SceneArena<Real>& scene, const SceneView<Re
         cudaMemcpyAsync(arena_.as<void>(), scene.bytes().data(), scene.bytes().size(), cudaMemcpyHostToDevice, stream));
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(stream));
     scene_.view = scene.at(arena_.as<void>());
-    if (path != DevicePath::plain_loop) return;
+    if (path == DevicePath::tree) return;
     scene_.constant = *constant_scene(here, scene_.view);
     primitives_.assign(here.solids.size, 0);
     for (uint32_t i = 0; i < here.convex.size; ++i) primitives_[here.convex[i]] |= 1u << i;

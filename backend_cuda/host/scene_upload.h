@@ -9,7 +9,7 @@
 
 namespace cistula {
 
-/// The path for a scene: with up to 16 primitives a plain loop is faster than any tree.
+/// The path for a scene: where they are few, a loop over primitives is faster than any tree.
 template <class Real>
 DevicePath path_for(const SceneView<Real>& scene);
 

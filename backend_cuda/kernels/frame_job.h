@@ -56,18 +56,19 @@ struct FrameJob {
     }
 };
 
-/// A scene in both forms; `constant` is set for the plain loop only.
+/// A scene in both forms; `constant` is set for loops only.
 template <class Real>
 struct DeviceScene {
     SceneView<Real> view;  // in device memory
-    ConstantScene<Real> constant;
+    BallScene<Real> constant;
 };
 
 /// How a kernel samples: every pixel on its uniform grid, or adaptively in a frame with a target error.
 enum class Sampling { uniform, adaptive };
 
 /// Enqueues a job's kernel. `mask` is an index of effect_masks. Adaptive sampling is compiled only for all effects,
-/// with and without layers; layers only for DevicePath::tree. Throws Error (device).
+/// with and without layers; layers only for DevicePath::tree, and DevicePath::ball_loop only for ball_mask. Throws
+/// Error (device).
 template <class Real>
 void launch(Sampling sampling, int mask, DevicePath path, const DeviceScene<Real>& scene, const FrameJob& job,
             cudaStream_t stream);

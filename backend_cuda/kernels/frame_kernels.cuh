@@ -118,12 +118,13 @@ void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& sc
             check_cuda(cudaGetLastError(), "launch of render_adaptive");
         }
     };
-    if (path == DevicePath::tree)
-        launch.template operator()<DevicePath::tree>(scene.view);
-    else if constexpr (mask == layered_mask)
-        throw Error(ErrorKind::failed, "internal error: layers need the tree");
-    else
-        launch.template operator()<DevicePath::plain_loop>(scene.constant);
+    if (path == DevicePath::tree) return launch.template operator()<DevicePath::tree>(scene.view);
+    if constexpr (mask != layered_mask)
+        if (path == DevicePath::plain_loop)
+            return launch.template operator()<DevicePath::plain_loop>(
+                static_cast<const ConstantScene<Real>&>(scene.constant));
+    if constexpr (mask == ball_mask) return launch.template operator()<DevicePath::ball_loop>(scene.constant);
+    throw Error(ErrorKind::failed, "internal error: layers need the tree, as balls do without their mask");
 }
 
 }  // namespace cistula

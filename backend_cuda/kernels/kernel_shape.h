@@ -10,6 +10,7 @@ inline constexpr int warp_threads = 32;
 /// The intersector and the form of scene and media that a kernel uses. Never changes the image.
 enum class DevicePath {
     plain_loop,  // a loop over a ConstantScene: few primitives, closed solids all convex and apart
+    ball_loop,   // a loop over a BallScene: the same with balls, which may touch
     tree,        // tree traversal, for any scene
 };
 
@@ -18,12 +19,12 @@ enum class DevicePath {
 /// of a thread.
 struct KernelShape {
     int warps;
-    int loop_blocks[2];  // blocks a multiprocessor, plain loop: in float, in double
+    int loop_blocks[2];  // blocks a multiprocessor, loops: in float, in double
     int tree_blocks[2];
 
     CISTULA_HD constexpr int threads() const { return warps * warp_threads; }
     CISTULA_HD constexpr int blocks(DevicePath path, bool in_float) const {
-        return (path == DevicePath::plain_loop ? loop_blocks : tree_blocks)[in_float ? 0 : 1];
+        return (path == DevicePath::tree ? tree_blocks : loop_blocks)[in_float ? 0 : 1];
     }
 };
 
@@ -32,7 +33,8 @@ inline constexpr KernelShape kernel_shapes[] = {
     {4, {7, 4}, {6, 4}},  // mirrors
     {4, {6, 4}, {6, 4}},  // clear bodies
     {4, {6, 4}, {6, 4}},  // colors and visible lights
-    {8, {3, 2}, {3, 2}},  // everything but spheres and smooth meshes
+    {8, {3, 2}, {3, 2}},  // flat bodies
+    {8, {3, 2}, {3, 2}},  // balls, flat bodies, skies
     {8, {3, 2}, {3, 2}},  // everything
     {8, {3, 2}, {3, 2}},  // everything and a budget
     {8, {3, 2}, {3, 2}},  // everything and layers

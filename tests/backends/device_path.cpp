@@ -86,8 +86,12 @@ bool check(const std::string& name, const SceneDescription& description, const F
     SceneView<Real> view = compiled->view();
     tree.put_into(view);
     expect_same(render_as_device<Real, Tree>(*compiled, view, description, settings), "tree");
+    using BallLoop = BruteIntersector<Real, SingleInterior, BallScene<Real>>;
     const auto small = constant_scene(view);
-    if (small) expect_same(render_as_device<Real, PlainLoop>(*compiled, *small, description, settings), "plain loop");
+    if (small && view.balls.empty())
+        expect_same(render_as_device<Real, PlainLoop>(*compiled, *small, description, settings), "plain loop");
+    else if (small)
+        expect_same(render_as_device<Real, BallLoop>(*compiled, *small, description, settings), "loop over balls");
     return small != nullptr;
 }
 
@@ -138,6 +142,55 @@ TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfGeneratedScenes) {
         plain_loops += check<TypeParam>("seed " + std::to_string(seed), scene, generated_settings(scene));
     }
     EXPECT_GT(plain_loops, 0);
+}
+
+/// Balls of glass, and mirrors, that touch one another, a floor and a wall, or stand apart from them. They take the
+/// loop over balls, unless one is cut or inside another.
+TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfBalls) {
+    SceneDescription plain = test::shipped_scene("spheres");
+    plain.depth = 7;
+    plain.objects.resize(1);  // the floor, at z = 0
+    TrianglesObject wall;
+    wall.vertices = {{-3, 2, 0}, {3, 2, 0}, {3, 2, 4}, {-3, 2, 4}};
+    wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+    plain.objects.push_back({"wall", 1, wall, ""});
+    const auto ball = [&](SceneDescription& scene, const glm::dvec3& center, double radius) {
+        SphereObject sphere;
+        sphere.center = center;
+        sphere.radius = radius;
+        scene.objects.push_back({"", 1 + int(scene.objects.size() % 3), sphere, ""});
+    };
+    const auto check_here = [&](const SceneDescription& scene, const char* name) {
+        FrameSettings settings = golden::settings_for(scene);
+        settings.set_size(64, 36);
+        return check<TypeParam>(name, scene, settings);
+    };
+    SceneDescription scene = plain;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 2; ++k) ball(scene, {i - 1.0, 1.5, k + 0.5}, 0.5);
+    ball(scene, {0.3, -1, 0.25}, 0.25);
+    ball(scene, {-0.7, -1.2, 1.1}, 0.3);
+    EXPECT_TRUE(check_here(scene, "touching"));
+    SolidObject cube;
+    cube.solid = PlatonicSolid::cube;
+    cube.center = {2.2, -0.5, 0.8};
+    cube.radius = 0.7;
+    scene.objects.push_back({"", 2, cube, ""});
+    EXPECT_TRUE(check_here(scene, "beside a cube"));
+    scene.camera.position = {-0.65, -1.25, 1.1};
+    EXPECT_TRUE(check_here(scene, "from within"));
+    scene = plain;
+    ball(scene, {0, 0, 0.3}, 0.5);
+    EXPECT_FALSE(check_here(scene, "cut by the floor"));
+    scene = plain;
+    ball(scene, {0, 0, 1}, 0.5);
+    ball(scene, {0, 0.1, 1}, 0.2);
+    EXPECT_FALSE(check_here(scene, "nested"));
+    scene = plain;
+    for (int i = 0; i < 28; ++i) ball(scene, {0.2 * (i % 7) - 0.6, 0.2 * (i / 7), 0.1}, 0.1);
+    EXPECT_TRUE(check_here(scene, "as many as fit"));
+    ball(scene, {0, -1, 0.1}, 0.1);
+    EXPECT_FALSE(check_here(scene, "one more"));
 }
 
 TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfScenesWithContacts) {

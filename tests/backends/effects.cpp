@@ -95,7 +95,8 @@ TYPED_TEST(EffectTest, EveryMaskIsCalledFor) {
                                                   benchmark,
                                                   test::shipped_scene("platonic"),
                                                   test::shipped_scene("glass"),
-                                                  test::shipped_scene("spheres")};
+                                                  test::shipped_scene("spheres"),
+                                                  test::shipped_scene("hard/planes")};
     ASSERT_EQ(scenes.size(), size_t(effect_mask_count));
     for (size_t i = 0; i < scenes.size(); ++i) {
         EXPECT_EQ(least_mask(required_effects(scenes[i])), int(i));

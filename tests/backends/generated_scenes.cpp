@@ -307,7 +307,7 @@ void check_coverage(const std::string& folder) {
     // Those that few of so rich scenes have run in tests/backends/effects.cpp, on ten scenes and more of which less is
     // left.
     for (const int mask : {3, 4}) coverage.expect("mask " + std::to_string(mask), 10);
-    static_assert(effect_mask_count == 6);
+    static_assert(effect_mask_count == 7);
     for (int depth = 1; depth <= 10; ++depth) coverage.expect("depth " + std::to_string(depth), 5);
     const std::set<std::string> of_files = {"mesh file", "picture, bilinear", "picture, nearest"};
     // clang-format off

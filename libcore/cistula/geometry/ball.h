@@ -8,9 +8,9 @@
 
 namespace cistula {
 
-/// Whether rays of a kernel may meet balls. A ConstantScene has none.
-template <class E, class Media>
-inline constexpr bool meets_balls = E::has(effect_spheres) && Media::contacts;
+/// Whether rays of a kernel may meet balls.
+template <class E, class Scene>
+inline constexpr bool meets_balls = E::has(effect_spheres) && holds_balls<Scene>;
 
 /// The part of a line inside a ball.
 template <class Real>
@@ -47,6 +47,11 @@ CISTULA_INLINE MaskOf<Real> starts_on_ball(const Scene& scene, uint32_t index, c
             if (is_ball(scene.solids[other]) && scene.balls[scene.solids[other].first_slab].family == ball.family)
                 on = on | (ray.from_solid == other);
     return on;
+}
+template <class Real, class Media>
+CISTULA_INLINE bool starts_on_ball(const BallScene<Real>&, uint32_t index, const Ball<Real>&,
+                                   const Ray<Real, Media>& ray) {
+    return ray.from_solid == index;
 }
 
 /// Takes the next crossing of a ball as `best` if it is less, for rays inside it and for others outside.
@@ -96,8 +101,8 @@ struct BallSides {
         if ((bits >> (fields - 1) * field_bits) == 0) bits = bits << field_bits | 2 * (plane + 1) | uint32_t(above);
     }
     /// Those of a ray.
-    template <class Real, class Media>
-    CISTULA_INLINE static BallSides at_start(const SceneView<Real>& scene, const Ray<Real, Media>& ray) {
+    template <class Real, class Media, class Scene>
+    CISTULA_INLINE static BallSides at_start(const Scene& scene, const Ray<Real, Media>& ray) {
         const bool known = ray.from_face != 0 && ray.from_solid != no_solid && is_ball(scene.solids[ray.from_solid]);
         return {known ? ray.from_face : 0};
     }

@@ -114,7 +114,7 @@ CISTULA_INLINE void closest_entry_beside(const Scene& scene, uint32_t index, uin
 template <class E = Effects<all_effects>, class Real, class Media, class Scene>
 CISTULA_HOST_NOINLINE void closest_convex(const Scene& scene, uint32_t index, const Ray<Real, Media>& ray,
                                           Hit<Real>& best) {
-    if constexpr (meets_balls<E, Media>)
+    if constexpr (meets_balls<E, Scene>)
         if (is_ball(scene.solids[index])) {
             const bool inside = ray.media.contains(index);
             return closest_ball(scene, index, ray, inside, !inside, best);
@@ -159,7 +159,7 @@ CISTULA_HD inline bool inside_convex(const Scene& scene, const Solid& solid, con
 /// Whether a camera is inside a convex solid. Of a ball, double decides.
 template <class Scene>
 CISTULA_HD inline bool is_in_convex(const Scene& scene, const Solid& solid, const Vec3<double>& camera) {
-    if constexpr (requires { scene.balls; })
+    if constexpr (holds_balls<Scene>)
         if (is_ball(solid)) {
             const auto& ball = scene.balls[solid.first_slab];
             const Vec3<double> off = camera - Vec3<double>(ball.center);

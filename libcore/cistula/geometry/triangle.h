@@ -348,7 +348,7 @@ template <class Real, class Media, class Scene>
 CISTULA_INLINE Real crossing_time(const Scene& scene, uint32_t solid, uint32_t triangle, Real own,
                                   const Ray<Real, Media>& ray) {
     const Real t = shared_time(scene, triangle, own, ray);
-    if constexpr (Media::contacts)
+    if constexpr (holds_balls<Scene>)
         if (!scene.ball_planes.empty() && is_sheet_near_ball(scene.solids[solid]))
             return time_near_ball(scene, scene.solids[solid], t, ray);
     return t;

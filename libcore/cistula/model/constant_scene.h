@@ -37,9 +37,9 @@ struct InlineSpan {
 /// Which primitives a shadow ray may meet, precomputed for each pair of solid and light (plan_shadows in
 /// libcore/scene).
 struct ShadowPlan {
-    static constexpr uint32_t solids = 24;
+    static constexpr uint32_t solids = 32;
     static constexpr uint32_t lights = 8;
-    static constexpr uint32_t convex = 16;
+    static constexpr uint32_t convex = 28;
     static constexpr uint32_t clusters = 4;
     static constexpr uint32_t first_cluster = convex;
     static_assert(solids <= 32 && first_cluster + clusters <= 32);
@@ -94,6 +94,28 @@ struct ConstantScene {
     Vec3<Real> bound;
     Real largest_bound;
     Real extent;
+};
+
+/// A ConstantScene with balls that at most touch one another and sheets, and have no kin.
+template <class Real>
+struct BallScene : ConstantScene<Real> {
+    /// What the search for hits reads of a ball.
+    struct alignas(16) Sphere {
+        Vec3<Real> center;
+        Real square;  // of the radius
+    };
+
+    uint32_t convex_balls;                           // bit p: convex[p] is a ball
+    InlineSpan<Sphere, ShadowPlan::convex> spheres;  // by place among `convex`; unused for other solids
+    InlineSpan<Ball<Real>, ShadowPlan::convex> balls;
+    InlineSpan<BallPlane<Real>, ShadowPlan::clusters> ball_planes;
+    Span<uint32_t> near_planes;  // as in the view that it was made from
+};
+
+/// Whether a scene's form has room for balls.
+template <class Scene>
+inline constexpr bool holds_balls = requires(const Scene& scene) {
+    scene.balls;
 };
 
 }  // namespace cistula

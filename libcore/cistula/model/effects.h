@@ -70,6 +70,8 @@ inline constexpr uint32_t clear_bodies = mirrors | effect_transparent_shadows | 
 
 /// Mask for everything that flat bodies under a background of one color call for.
 inline constexpr uint32_t flat_scenes = all_effects & ~(effect_spheres | effect_sky | effect_smooth | effect_planes);
+/// Mask for balls and flat bodies, and for skies.
+inline constexpr uint32_t ball_scenes = flat_scenes | effect_spheres | effect_sky;
 
 /// The effect masks that are instantiated, ordered by size. Each is a superset of what some common kind of scene needs
 /// (docs/effects.md).
@@ -79,6 +81,7 @@ inline constexpr uint32_t effect_masks[] = {
     clear_bodies,
     clear_bodies | effect_visible_lights | effect_tint | effect_lights_on_faces,
     flat_scenes,
+    ball_scenes,
     all_effects,
     all_effects | keeps_budget,
     all_effects | keeps_budget | fills_layers,
@@ -89,8 +92,10 @@ inline constexpr int limited_mask = compiled_mask_count - 2;
 /// The number of masks that scenes are rendered with, without a budget and layers; the last of them is all_effects.
 inline constexpr int effect_mask_count = limited_mask;
 static_assert(effect_masks[effect_mask_count - 1] == all_effects);
+inline constexpr int ball_mask = effect_mask_count - 2;
+static_assert(effect_masks[ball_mask] == ball_scenes);
 /// The first of the masks that the CPU's tiles in lanes are compiled for: on a CPU lesser ones are hardly quicker.
-inline constexpr int least_lane_mask = effect_mask_count - 4;
+inline constexpr int least_lane_mask = effect_mask_count - 5;
 
 /// The index in effect_masks of the smallest mask that contains `required`.
 constexpr int least_mask(uint32_t required) {

@@ -39,8 +39,9 @@ struct alignas(16) Ball {
     uint32_t has_kin;      // 1 if others are in its family
     uint32_t near_meshes;  // 1 if a closed mesh may touch its surface
     uint32_t first_plane,
-        plane_count;       // the planes of flat sheets near it: near_planes[first_plane + i] of ball_planes
-    Vec3<double> axes[3];  // those of its longitudes and latitudes (texture_uv)
+        plane_count;         // the planes of flat sheets near it: near_planes[first_plane + i] of ball_planes,
+    uint32_t touched_count;  // ... of which it only touches the first so many
+    Vec3<double> axes[3];    // those of its longitudes and latitudes (texture_uv)
 };
 
 /// The plane of flat sheets near balls.
@@ -200,7 +201,7 @@ struct Material {
     Vec3<Real> specular;       // ks * S
     Real diffuse;              // kd
     Real exponent;             // n; used where integer_exponent < 0
-    int32_t integer_exponent;  // n if it is an integer in [0, 1024], else -1
+    int32_t integer_exponent;  // n if it is an integer in [0, 1024], else -1; 0 where there is no highlight
     Real local;                // max(0, 1 - kr - kt), rounded down
     // What goes on.
     Real reflection;    // kr

@@ -246,15 +246,15 @@ struct BallStart {
     template <class Real, class Media, class Intersector, class Scene>
     CISTULA_INLINE void begin(const Scene& scene, const Intersector& intersector, Ray<Real, Media>& ray) const {
         if (sides.bits != 0) ray.from_face = sides.bits;
-        if (near_meshes) count_meshes(scene, intersector, ray, true);
+        if constexpr (Media::meshes)
+            if (near_meshes) count_meshes(scene, intersector, ray, true);
     }
 };
 
 /// The side of a flat sheet's plane on which rays from a ball start, for a start within rounding of the plane: that of
 /// the parent ray at the hit.
-template <class Real, class Media>
-CISTULA_HD inline bool is_above(const SceneView<Real>& scene, uint32_t number, Real off, const Ray<Real, Media>& parent,
-                                Real t) {
+template <class Real, class Media, class Scene>
+CISTULA_HD inline bool is_above(const Scene& scene, uint32_t number, Real off, const Ray<Real, Media>& parent, Real t) {
     const BallPlane<Real>& plane = scene.ball_planes[number];
     const Real slope = dot(plane.normal, parent.direction);
     if (magnitude(slope) < least_slope<Real>) return off > Real(0);
@@ -268,22 +268,25 @@ CISTULA_HD inline bool is_above(const SceneView<Real>& scene, uint32_t number, R
     return (at <= t) == rises;
 }
 
-/// What rays from `start`, where a ray hits a ball, know beside the solids around them.
-template <class Real, class Media>
-CISTULA_NOINLINE BallStart known_at_start(const SceneView<Real>& scene, const Ball<Real>& ball,
-                                          const Ray<Real, Media>& parent, Real t, Vec3<Real> start) {
+/// What rays from `start`, where a ray hits a ball, know beside the solids around them. A ball that only touches a
+/// plane is on one side of it.
+template <class Real, class Media, class Scene>
+CISTULA_NOINLINE BallStart known_at_start(const Scene& scene, const Ball<Real>& ball, const Ray<Real, Media>& parent,
+                                          Real t, Vec3<Real> start) {
     BallStart known{{}, ball.near_meshes != 0};
     for (uint32_t i = 0; i < ball.plane_count; ++i) {
-        const uint32_t plane = scene.near_planes[ball.first_plane + i];
-        const Real off = dot(scene.ball_planes[plane].normal, start) - scene.ball_planes[plane].offset;
-        if (!(magnitude(off) > incidence<Real> * scene.extent))
-            known.sides.add(plane, is_above(scene, plane, off, parent, t));
+        const uint32_t number = scene.near_planes[ball.first_plane + i];
+        const BallPlane<Real>& plane = scene.ball_planes[number];
+        const Real off = dot(plane.normal, start) - plane.offset;
+        if (magnitude(off) > incidence<Real> * scene.extent) continue;
+        known.sides.add(number, i < ball.touched_count ? dot(plane.normal, ball.center) > plane.offset
+                                                       : is_above(scene, number, off, parent, t));
     }
     return known;
 }
 /// What rays from a hit know, if it is one on a ball.
-template <class Real, class Media>
-CISTULA_INLINE BallStart ball_start(const SceneView<Real>& scene, const Ray<Real, Media>& parent, const Hit<Real>& hit,
+template <class Real, class Media, class Scene>
+CISTULA_INLINE BallStart ball_start(const Scene& scene, const Ray<Real, Media>& parent, const Hit<Real>& hit,
                                     const Vec3<Real>& start) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
     if (!is_ball(solid)) return {};

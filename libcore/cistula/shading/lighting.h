@@ -109,7 +109,7 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
             around = &corrected;
         }
     [[maybe_unused]] BallStart from_ball;
-    if constexpr (meets_balls<E, Media> && !in_lanes<Real>)
+    if constexpr (meets_balls<E, Scene> && !in_lanes<Real>)
         from_ball = ball_start(scene, ray, event.hit, s.viewer_side);
     const Vec3<Real>* from = &s.viewer_side;
     [[maybe_unused]] SmoothStart<Real> off_face;
@@ -155,7 +155,7 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
                                  dot(spread<Real>(light.position) - shadow.ray.origin, shadow.ray.direction));
             if constexpr (meets_contacts<E, Media> && !in_lanes<Real>)
                 if (meshes) count_meshes(scene, intersector, shadow.ray);
-            if constexpr (meets_balls<E, Media> && !in_lanes<Real>) from_ball.begin(scene, intersector, shadow.ray);
+            if constexpr (meets_balls<E, Scene> && !in_lanes<Real>) from_ball.begin(scene, intersector, shadow.ray);
             rays.add_shadow(lights);
             if constexpr (in_lanes<Real>)
                 arrives = intersector.template transmittance<E>(shadow, lights);

@@ -219,7 +219,7 @@ CISTULA_INLINE void shadow_ball(const Scene& scene, uint32_t index, const Shadow
 template <class Real, class E, class Media, class Scene>
 CISTULA_HOST_NOINLINE void shadow_convex(const Scene& scene, uint32_t index, const ShadowRay<Real, Media>& shadow,
                                          ShadowSum<E>& sum) {
-    if constexpr (meets_balls<E, Media>)
+    if constexpr (meets_balls<E, Scene>)
         if (is_ball(scene.solids[index])) {
             const bool inside = shadow.ray.media.contains(index);
             return shadow_ball<E>(scene, index, shadow, inside, !inside, sum);

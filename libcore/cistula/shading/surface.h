@@ -67,7 +67,7 @@ CISTULA_INLINE Vec3<Real> normal_at(const Scene& scene, [[maybe_unused]] const R
                                     const Hit<Real>& hit) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
     const uint32_t face = key_face(hit.key);
-    if constexpr (meets_balls<E, Media>)
+    if constexpr (meets_balls<E, Scene>)
         if (is_ball(solid)) {
             const Vec3<Real> normal = ball_normal(scene.balls[solid.first_slab].center, ray, hit.t);
             return hit.enters ? normal : -normal;
@@ -119,7 +119,7 @@ template <class Real, class Scene>
 CISTULA_INLINE Vec2<Real> texture_uv(const Scene& scene, const Hit<Real>& hit,
                                      [[maybe_unused]] const Vec3<Real>& normal) {
     const Solid& solid = scene.solids[key_solid(hit.key)];
-    if constexpr (requires { scene.balls; })
+    if constexpr (holds_balls<Scene>)
         if (is_ball(solid)) return ball_uv(scene.balls[solid.first_slab], hit.enters ? normal : -normal);
     if (is_disk(solid)) return {hit.u, hit.v};
     const Vec2<Real>* uv = scene.uvs.data + solid.first_uv + 3 * (key_face(hit.key) - solid.first_triangle);
@@ -134,7 +134,7 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
     const Material<Real>& material = scene.materials[s.material];
     s.color = material.color;
     s.normal = s.shading = normal_at<E>(scene, ray, hit);
-    if constexpr (meets_balls<E, Media>)
+    if constexpr (meets_balls<E, Scene>)
         if (is_ball(solid)) {
             const Ball<Real>& ball = scene.balls[solid.first_slab];
             s.point = s.viewer_side = along(ball.center, ball.radius, hit.enters ? s.normal : -s.normal);
@@ -160,7 +160,7 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
             triangle_corners(scene, hit.slot, corner);
             s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
             s.viewer_side = apex_at(scene, hit.slot, corner, s.normal, hit.enters).from(s.point);
-            if constexpr (meets_balls<E, Media>)
+            if constexpr (meets_balls<E, Scene>)
                 if (is_sheet_near_ball(solid)) s.viewer_side = off_sheet(scene.extent, ray, hit.t, s.normal);
             if constexpr (meets_smooth<E, Media>)
                 if (const Vec3<Real>* normals = corner_normals(scene, hit.slot)) {

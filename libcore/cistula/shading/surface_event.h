@@ -107,7 +107,7 @@ CISTULA_INLINE void resolve_event(const Scene& scene, const Intersector& interse
     if constexpr (meets_contacts<E, Media>) {
         if (key_kind(hit.key) == CrossingKind::sheet) return;
         const uint32_t solid = key_solid(hit.key);
-        if constexpr (meets_balls<E, Media>)
+        if constexpr (meets_balls<E, Scene>)
             if (is_ball(scene.solids[solid])) {
                 if (scene.balls[scene.solids[solid].first_slab].has_kin != 0)
                     gather_shared(scene, intersector, ray, event);

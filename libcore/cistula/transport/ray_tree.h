@@ -288,7 +288,7 @@ class RayTree {
                 find_start_plane<E>(scene_, ray);
                 count_meshes(scene_, intersector_, ray);
             }
-        if constexpr (meets_balls<E, Media>)
+        if constexpr (meets_balls<E, Scene>)
             ball_start(scene_, parent, event.hit, ray.origin).begin(scene_, intersector_, ray);
     }
 

@@ -32,6 +32,7 @@
 #include "scene/compile/solids/compile_balls.h"
 #include "scene/compile/solids/compile_disks.h"
 #include "scene/compile/solids/compile_solids.h"
+#include "scene/compile/solids/near_solids.h"
 #include "scene/compile/solids/placed_bodies.h"
 #include "scene/description/rotation.h"
 #include "scene/trees/tree_build.h"
@@ -73,10 +74,7 @@ std::shared_ptr<MeshCache> new_mesh_cache() {
 
 namespace {
 
-constexpr size_t most_pairs = 10'000'000;
 constexpr uint32_t most_outlined = 16;  // triangles of a mesh that is outlined by its corners; larger ones by their box
-constexpr double touching =
-    0x1p-17;  // tolerance for solids in contact, far above that of surface events (surface_event.h)
 
 /// One compilation; its steps are called in the order of their dependencies.
 template <class Real>
@@ -134,9 +132,9 @@ class Compiler {
         compile_shading();
         compile_lights();
         add_hulls();
-        find_touching_solids();
-        find_isolated_solids();
-        find_crossed_bulges();
+        find_touching_solids(scene_, places_.boxes);
+        find_isolated_solids(scene_, bodies_.disks);
+        find_crossed_bulges(scene_, source_, places_);
         explain();
         scene_.hashes = FrameHashes(hash_.hex());
         return std::make_unique<CompiledScene<Real>>(std::move(scene_));
@@ -239,87 +237,6 @@ class Compiler {
         if (plane == no_plane) return static_cast<Real>(face % 2 == 1 ? pair.high : pair.low);
         const SharedPlane<Real>& shared = scene_.shared_planes[plane];
         return dot(dvec3(shared.normal), pair.normal) > 0 ? shared.offset : -shared.offset;
-    }
-
-    /// Whether two boxes are no farther apart than `reach` along any axis.
-    static bool near(const Box& a, const Box& b, double reach) {
-        for (int axis = 0; axis < 3; ++axis)
-            if (!(a.low[axis] <= b.high[axis] + reach && b.low[axis] <= a.high[axis] + reach)) return false;
-        return true;
-    }
-
-    /// Finds the solids with an inside that may share a face with another solid (surface_event.h).
-    void find_touching_solids() {
-        const auto may_share = [&](uint32_t i) {
-            return scene_.solids[i].kind != SolidKind::sheet && !places_.boxes[i].empty();
-        };
-        const auto count = static_cast<uint32_t>(scene_.solids.size());
-        std::vector<RTCBuildPrimitive> primitives;
-        for (uint32_t i = 0; i < count; ++i)
-            if (may_share(i)) primitives.push_back(padded_primitive(places_.boxes[i], touching, i));
-        const Tree tree = build_tree(primitives, 0);
-        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
-            const Box& own = places_.boxes[i];
-            if (may_share(i))
-                scene_.solids[i].may_touch = any_in_box(tree, padded(own, touching), [&](uint32_t other) {
-                    return other != i && near(own, places_.boxes[other], touching);
-                });
-        });
-    }
-
-    /// Whether a disk comes near a convex solid in a box: lines in a ball that only touches it must know of it, too
-    /// (docs/rules.md, 14, line 14).
-    bool meets_disk(const SceneView<Real>& view, uint32_t index, const Box& box) const {
-        const bool ball = is_ball(view.solids[index]);
-        const double reach = touching + (ball ? double(view.balls[view.solids[index].first_slab].radius)
-                                              : 0.5 * length(box.high - box.low));
-        return std::any_of(bodies_.disks.begin(), bodies_.disks.end(),
-                           [&](const PlacedDisk& disk) { return disk.distance(0.5 * (box.low + box.high)) <= reach; });
-    }
-
-    /// Finds solids inside of which nothing else is. An optimization, skipped for scenes with very many pairs.
-    void find_isolated_solids() {
-        const SceneView<Real> view = scene_.view();
-        const size_t primitives = view.convex.size + view.clusters.size;
-        if (view.convex.empty() || view.convex.size * primitives > most_pairs) return;
-        std::vector<Box> boxes;
-        for (uint32_t p = 0; p < primitives; ++p) boxes.push_back(box_of(primitive_box(view, p)));
-        for (uint32_t a = 0; a < view.convex.size; ++a) {
-            bool isolated = !meets_disk(view, view.convex[a], boxes[a]);
-            for (uint32_t b = 0; b < primitives && isolated; ++b)
-                isolated = a == b || !near(boxes[a], boxes[b], 0) || is_outside_ball(view, a, b, boxes[b]);
-            scene_.solids[view.convex[a]].isolated = isolated ? 1 : 0;
-        }
-    }
-
-    /// Whether nothing of primitive b, in a box, is inside the convex solid a, which is a ball: b's box is outside, or
-    /// b is a ball that at most touches it (docs/rules.md, 14, line 9).
-    bool is_outside_ball(const SceneView<Real>& view, uint32_t a, uint32_t b, const Box& box) const {
-        const auto ball_of = [&](uint32_t p) -> const Ball<Real>* {
-            const Solid* solid = p < view.convex.size ? &view.solids[view.convex[p]] : nullptr;
-            return solid && is_ball(*solid) ? &view.balls[solid->first_slab] : nullptr;
-        };
-        const Ball<Real>* own = ball_of(a);
-        if (!own) return false;
-        const dvec3 center(own->center);
-        const double radius = own->radius;
-        if (const Ball<Real>* other = ball_of(b))
-            return length(dvec3(other->center) - center) >=
-                   radius + double(other->radius) - double(incidence<Real>) * double(view.extent);
-        return distance_to_box(box, center) > radius;
-    }
-
-    /// Finds the smooth meshes of which anything else, or another part, may lie within a bulge.
-    void find_crossed_bulges() {
-        const auto count = static_cast<uint32_t>(scene_.solids.size());
-        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
-            Solid& solid = scene_.solids[i];
-            if (!is_smooth(solid)) return;
-            bool is_crossed = source_.solids[i].in_parts;
-            for (uint32_t other = 0; other < count && !is_crossed; ++other)
-                is_crossed = other != i && near(places_.boxes[i], places_.boxes[other], places_.bulges[i] + touching);
-            solid.slab_count = is_crossed ? 1 : 0;
-        });
     }
 
     NormalizedMesh placed_mesh(uint32_t number) const {

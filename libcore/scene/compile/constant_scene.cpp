@@ -6,16 +6,39 @@
 namespace cistula {
 namespace {
 
+/// Whether a ray that is inside a solid is inside no other, and a hit on it is that of no other.
+template <class Real>
+bool is_by_itself(const SceneView<Real>& scene, const Solid& solid) {
+    if (!is_ball(solid)) return solid.kind != SolidKind::mesh && !solid.may_touch;
+    const Ball<Real>& ball = scene.balls[solid.first_slab];
+    return solid.isolated && ball.has_kin == 0 && ball.touched_count == ball.plane_count;
+}
+
+/// Fills what a BallScene has beside a ConstantScene, whose solids are filled.
+template <class Real>
+bool assign_balls(const SceneView<Real>& here, const SceneView<Real>& there, BallScene<Real>& to) {
+    to.near_planes = there.near_planes;
+    to.convex_balls = 0;
+    to.spheres.assign(to.convex.size, [&](uint32_t place) -> typename BallScene<Real>::Sphere {
+        const Solid& solid = to.convex[place].solid;
+        if (!is_ball(solid)) return {};
+        to.convex_balls |= 1u << place;
+        const Ball<Real>& ball = here.balls[solid.first_slab];
+        return {ball.center, ball.radius * ball.radius};
+    });
+    return to.balls.assign(here.balls) && to.ball_planes.assign(here.ball_planes);
+}
+
 /// Fills `to`; false if the scene does not fit.
 template <class Real>
-bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantScene<Real>& to) {
-    if (!here.shared_planes.empty() || !here.balls.empty() || !here.normals.empty()) return false;
+bool assign(const SceneView<Real>& here, const SceneView<Real>& there, BallScene<Real>& to) {
+    if (!here.shared_planes.empty() || !here.normals.empty()) return false;
     for (const Solid& solid : here.solids)
-        if (solid.kind == SolidKind::mesh || solid.may_touch) return false;
+        if (!is_by_itself(here, solid)) return false;
     if (!to.solids.assign(here.solids) || !to.slabs.assign(here.slabs) ||
         !to.convex.assign(here.convex.size, [&](uint32_t i) { return indexed_solid(here, here.convex[i]); }) ||
         !to.clusters.assign(here.clusters) || !to.materials.assign(here.materials) || !to.lights.assign(here.lights) ||
-        !to.textures.assign(here.textures))
+        !to.textures.assign(here.textures) || !assign_balls(here, there, to))
         return false;
     to.slab_groups = there.slab_groups;
     to.facets = there.facets;
@@ -49,9 +72,9 @@ bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantS
 }  // namespace
 
 template <class Real>
-std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& here, const SceneView<Real>& there) {
-    return in_default_rounding([&]() -> std::unique_ptr<ConstantScene<Real>> {
-        auto scene = std::make_unique<ConstantScene<Real>>();
+std::unique_ptr<BallScene<Real>> constant_scene(const SceneView<Real>& here, const SceneView<Real>& there) {
+    return in_default_rounding([&]() -> std::unique_ptr<BallScene<Real>> {
+        auto scene = std::make_unique<BallScene<Real>>();
         if (!assign(here, there, *scene)) return nullptr;
         plan_shadows(here, scene->plan);
         return scene;
@@ -60,12 +83,12 @@ std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& here,
 
 template <class Real>
 bool fits_constant_scene(const SceneView<Real>& scene) {
-    return assign(scene, scene, *std::make_unique<ConstantScene<Real>>());
+    return assign(scene, scene, *std::make_unique<BallScene<Real>>());
 }
 
 template bool fits_constant_scene(const SceneView<float>&);
 template bool fits_constant_scene(const SceneView<double>&);
-template std::unique_ptr<ConstantScene<float>> constant_scene(const SceneView<float>&, const SceneView<float>&);
-template std::unique_ptr<ConstantScene<double>> constant_scene(const SceneView<double>&, const SceneView<double>&);
+template std::unique_ptr<BallScene<float>> constant_scene(const SceneView<float>&, const SceneView<float>&);
+template std::unique_ptr<BallScene<double>> constant_scene(const SceneView<double>&, const SceneView<double>&);
 
 }  // namespace cistula

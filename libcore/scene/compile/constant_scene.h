@@ -16,13 +16,13 @@ bool takes_loop(const SceneView<Real>& scene) {
     return scene.convex.size + scene.clusters.size <= most_in_loop;
 }
 
-/// The ConstantScene of a view readable here, with everything precomputed for it. Null if the scene is too large, or if
-/// a ray may be inside more than one solid or inside a mesh, which SingleInterior rules out. `there`: the scene where
-/// kernels read it.
+/// The ConstantScene of a view readable here, with everything precomputed for it; a BallScene if it has balls. Null if
+/// the scene is too large, or if a ray may be inside more than one solid or inside a mesh, which SingleInterior rules
+/// out. `there`: the scene where kernels read it.
 template <class Real>
-std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& here, const SceneView<Real>& there);
+std::unique_ptr<BallScene<Real>> constant_scene(const SceneView<Real>& here, const SceneView<Real>& there);
 template <class Real>
-std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& scene) {
+std::unique_ptr<BallScene<Real>> constant_scene(const SceneView<Real>& scene) {
     return constant_scene(scene, scene);
 }
 

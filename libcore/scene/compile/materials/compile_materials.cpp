@@ -101,7 +101,9 @@ Material<Real> compile_material(const MaterialDescription& material, const dvec3
     m.exponent = static_cast<Real>(material.exponent);
     const bool integer =
         material.exponent <= largest_integer_exponent && material.exponent == floor_of(material.exponent);
-    m.integer_exponent = integer ? static_cast<int32_t>(material.exponent) : -1;
+    m.integer_exponent = !(largest_component(m.specular) > Real(0)) ? 0
+                         : integer                                  ? static_cast<int32_t>(material.exponent)
+                                                                    : -1;
     // Shares may add up to slightly more than 1; that excess must not grow from bounce to bounce.
     const double whole = max_or_second(material.reflection + material.transmission, 1.0);
     const double transmission = material.transmission / whole;

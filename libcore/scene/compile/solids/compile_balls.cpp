@@ -47,6 +47,13 @@ bool is_near(const PlacedBall& ball, const Box& box, double reach) {
     return distance_to_box(box, ball.center) <= ball.radius + reach && farthest >= ball.radius - reach;
 }
 
+/// Whether a ball is at most 16 u M beyond a plane.
+template <class Real>
+bool only_touches(const Ball<Real>& ball, const BallPlane<Real>& plane, Real extent) {
+    const double off = dot(dvec3(plane.normal), dvec3(ball.center)) - double(plane.offset);
+    return magnitude(off) >= double(ball.radius) - double(incidence<Real>) * double(extent);
+}
+
 /// Looks for the closed meshes and the flat sheets near balls.
 template <class Real>
 class NearBalls {
@@ -78,8 +85,12 @@ class NearBalls {
         });
         std::sort(near.begin(), near.end());
         near.erase(std::unique(near.begin(), near.end()), near.end());
+        const auto cut = std::stable_partition(near.begin(), near.end(), [&](uint32_t plane) {
+            return only_touches(ball, scene_.ball_planes[plane], scene_.extent);
+        });
         ball.first_plane = uint32_t(scene_.near_planes.size());
         ball.plane_count = uint32_t(near.size());
+        ball.touched_count = uint32_t(cut - near.begin());
         scene_.near_planes.insert(scene_.near_planes.end(), near.begin(), near.end());
     }
 
