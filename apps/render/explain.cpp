@@ -50,9 +50,10 @@ std::string explain_table(const std::string& scene, const Explanation& explanati
                           const EffectCosts* costs) {
     const std::vector<EffectReason>& reasons = explanation.effects;
     const uint32_t required = required_effects(reasons);
-    const int first = backend == Backend::embree ? least_lane_mask : 0;
-    const int chosen = std::max(least_mask(required), first);
-    const uint32_t mask = effect_masks[chosen];
+    const bool in_lanes = backend == Backend::embree;
+    const int least = least_mask(required);
+    const int chosen = in_lanes ? least_lane_mask(least) : least;
+    const uint32_t mask = effect_masks[in_lanes ? lane_masks[chosen] : chosen];
 
     constexpr const char* row = "{:<20} {:<7} {:<9} {}{}\n";
     const auto cost_of = [&](uint32_t effect) { return costs ? fmt::format("{:<9}", text_of(*costs, effect)) : ""; };
@@ -65,7 +66,8 @@ std::string explain_table(const std::string& scene, const Explanation& explanati
     table += fmt::format(
         "\nOf the {} sets of effects for which code is compiled, number {} runs, the least that has all that are "
         "needed. Left out: {}. In without need: {}; that changes no bit of the image.\n",
-        effect_mask_count - first, chosen - first + 1, list_of(all_effects & ~mask), list_of(mask & ~required));
+        in_lanes ? lane_mask_count : effect_mask_count, chosen + 1, list_of(all_effects & ~mask),
+        list_of(mask & ~required));
     for (const std::string& overlap : explanation.overlaps) table += overlap + '\n';
     if (costs)
         table += fmt::format(

@@ -103,7 +103,10 @@ class FrameTask {
             throw Error(ErrorKind::usage, "this intersector has no layers");
         if (in_lanes != nullptr && camera_fits_lanes()) tiles_ = tile_functions(*in_lanes, settings.lanes);
         mask_ = mask_to_run(compiled.effects, settings, frame_);
-        if (mask_ != layered_mask) mask_ = tiles_ != nullptr ? std::max(mask_, least_lane_mask) : limited_mask;
+        if (mask_ != layered_mask)
+            mask_ = tiles_ == nullptr           ? limited_mask
+                    : mask_ < effect_mask_count ? lane_masks[least_lane_mask(mask_)]
+                                                : mask_;
     }
 
     /// The effects that are compiled into the code that runs.

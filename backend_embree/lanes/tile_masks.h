@@ -1,4 +1,4 @@
-// The tile renderers of one number type and instruction set, for the effect masks from least_lane_mask on.
+// The tile renderers of one number type and instruction set, for the effect masks of lanes.
 #pragma once
 
 #include <atomic>
@@ -32,12 +32,12 @@ class MaskTile : public AnyTile {
 };
 
 /// The tile of a mask without a budget, or of layered_mask.
-template <class Real, int compiled = least_lane_mask>
+template <class Real, int place = 0>
 AnyTile* make_mask_tile(int mask, const LaneScene<ScalarOf<Real>>& scene, const FrameView& frame) {
     if (mask == layered_mask) return new MaskTile<Real, Effects<effect_masks[layered_mask]>>(scene, frame);
-    if constexpr (compiled + 1 < effect_mask_count)
-        if (mask > compiled) return make_mask_tile<Real, compiled + 1>(mask, scene, frame);
-    return new MaskTile<Real, Effects<effect_masks[compiled]>>(scene, frame);
+    if constexpr (place + 1 < lane_mask_count)
+        if (mask > lane_masks[place]) return make_mask_tile<Real, place + 1>(mask, scene, frame);
+    return new MaskTile<Real, Effects<effect_masks[lane_masks[place]]>>(scene, frame);
 }
 
 /// The functions of a number type of lanes.

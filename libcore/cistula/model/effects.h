@@ -94,14 +94,24 @@ inline constexpr int effect_mask_count = limited_mask;
 static_assert(effect_masks[effect_mask_count - 1] == all_effects);
 inline constexpr int ball_mask = effect_mask_count - 2;
 static_assert(effect_masks[ball_mask] == ball_scenes);
-/// The first of the masks that the CPU's tiles in lanes are compiled for: on a CPU lesser ones are hardly quicker.
-inline constexpr int least_lane_mask = effect_mask_count - 5;
-
 /// The index in effect_masks of the smallest mask that contains `required`.
 constexpr int least_mask(uint32_t required) {
     for (int i = 0; i < effect_mask_count; ++i)
         if ((required & ~effect_masks[i]) == 0) return i;
     return effect_mask_count - 1;
+}
+
+/// The masks that the CPU's tiles in lanes are compiled for, as indices of effect_masks. On a CPU lesser ones are
+/// hardly quicker, and that of balls no quicker than all effects.
+inline constexpr int lane_masks[] = {ball_mask - 3, ball_mask - 2, ball_mask - 1, ball_mask + 1};
+inline constexpr int lane_mask_count = sizeof(lane_masks) / sizeof(lane_masks[0]);
+static_assert(lane_masks[lane_mask_count - 1] == effect_mask_count - 1);
+
+/// The place in lane_masks of the least that contains one of effect_masks.
+constexpr int least_lane_mask(int mask) {
+    int place = 0;
+    while (lane_masks[place] < mask) ++place;
+    return place;
 }
 
 }  // namespace cistula
