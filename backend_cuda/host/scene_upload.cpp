@@ -8,8 +8,8 @@ namespace cistula {
 
 template <class Real>
 DevicePath path_for(const SceneView<Real>& scene) {
-    if ((scene.balls.empty() && !takes_loop(scene)) || !fits_constant_scene(scene)) return DevicePath::tree;
-    return scene.balls.empty() ? DevicePath::plain_loop : DevicePath::ball_loop;
+    if (!scene.balls.empty()) return ball_scene(scene, scene) ? DevicePath::ball_loop : DevicePath::tree;
+    return takes_loop(scene) && fits_constant_scene(scene) ? DevicePath::plain_loop : DevicePath::tree;
 }
 
 template <class Real>
@@ -20,7 +20,8 @@ SceneUpload<Real>::SceneUpload(const SceneArena<Real>& scene, const SceneView<Re
         cudaMemcpyAsync(arena_.as<void>(), scene.bytes().data(), scene.bytes().size(), cudaMemcpyHostToDevice, stream));
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(stream));
     scene_.view = scene.at(arena_.as<void>());
-    if (path == DevicePath::tree) return;
+    if (path == DevicePath::ball_loop) scene_.balls = *ball_scene(here, scene_.view);
+    if (path != DevicePath::plain_loop) return;
     scene_.constant = *constant_scene(here, scene_.view);
     primitives_.assign(here.solids.size, 0);
     for (uint32_t i = 0; i < here.convex.size; ++i) primitives_[here.convex[i]] |= 1u << i;

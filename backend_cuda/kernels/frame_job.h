@@ -56,11 +56,12 @@ struct FrameJob {
     }
 };
 
-/// A scene in both forms; `constant` is set for loops only.
+/// A scene in its forms; `constant` and `balls` are set for their loops only.
 template <class Real>
 struct DeviceScene {
     SceneView<Real> view;  // in device memory
-    BallScene<Real> constant;
+    ConstantScene<Real> constant;
+    BallScene<Real> balls;
 };
 
 /// How a kernel samples: every pixel on its uniform grid, or adaptively in a frame with a target error.

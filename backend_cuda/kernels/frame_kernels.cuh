@@ -62,9 +62,9 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
     const int samples = job.frame.supersample * job.frame.supersample;
     begin_pixel(record);  // also beyond the rectangle, since all are counted
     for (int round = 0; round < samples; round += warps) {
-        // Samples start together, so that the warps of a block do much the same at a time and share the instructions
-        // and constants that are fetched.
-        if (round != 0) __syncthreads();
+        // Where samples start together the warps of a block do much the same at a time and share the instructions and
+        // constants that are fetched.
+        if (kernel_shapes[mask].together && round != 0) __syncthreads();
         const int i = round + (shared_tile ? warp : 0);
         if (is_inside && i < samples) add_sample(task, i, record);
     }
@@ -120,10 +120,8 @@ void launch_mask(Sampling sampling, DevicePath path, const DeviceScene<Real>& sc
     };
     if (path == DevicePath::tree) return launch.template operator()<DevicePath::tree>(scene.view);
     if constexpr (mask != layered_mask)
-        if (path == DevicePath::plain_loop)
-            return launch.template operator()<DevicePath::plain_loop>(
-                static_cast<const ConstantScene<Real>&>(scene.constant));
-    if constexpr (mask == ball_mask) return launch.template operator()<DevicePath::ball_loop>(scene.constant);
+        if (path == DevicePath::plain_loop) return launch.template operator()<DevicePath::plain_loop>(scene.constant);
+    if constexpr (mask == ball_mask) return launch.template operator()<DevicePath::ball_loop>(scene.balls);
     throw Error(ErrorKind::failed, "internal error: layers need the tree, as balls do without their mask");
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "backend_cuda/kernels/frame_job.h"
+#include "cistula/traversal/ball_loop.h"
 #include "cistula/traversal/bvh.h"
 
 namespace cistula {
@@ -37,16 +38,18 @@ constexpr int least_blocks(const KernelShape& shape, DevicePath path) {
 /// The form of the scene that a path's kernels read, and their intersector.
 template <class Real, DevicePath path>
 struct PathTraits;
-template <class Real, class SceneKind>
-struct LoopTraits {
-    using Scene = SceneKind;
+template <class Real>
+struct PathTraits<Real, DevicePath::plain_loop> {
+    using Scene = ConstantScene<Real>;
     using Intersector = BruteIntersector<Real, SingleInterior, Scene>;
     __device__ static Intersector intersector(const Scene& scene, uint32_t in_view) { return {scene, in_view}; }
 };
 template <class Real>
-struct PathTraits<Real, DevicePath::plain_loop> : LoopTraits<Real, ConstantScene<Real>> {};
-template <class Real>
-struct PathTraits<Real, DevicePath::ball_loop> : LoopTraits<Real, BallScene<Real>> {};
+struct PathTraits<Real, DevicePath::ball_loop> {
+    using Scene = BallScene<Real>;
+    using Intersector = BallIntersector<Real>;
+    __device__ static Intersector intersector(const Scene& scene, uint32_t) { return {scene}; }
+};
 template <class Real>
 struct PathTraits<Real, DevicePath::tree> {
     using Scene = SceneView<Real>;

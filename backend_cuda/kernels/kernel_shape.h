@@ -21,6 +21,7 @@ struct KernelShape {
     int warps;
     int loop_blocks[2];  // blocks a multiprocessor, loops: in float, in double
     int tree_blocks[2];
+    bool together = true;  // whether samples start together: not where their trees differ much in size
 
     CISTULA_HD constexpr int threads() const { return warps * warp_threads; }
     CISTULA_HD constexpr int blocks(DevicePath path, bool in_float) const {
@@ -29,15 +30,15 @@ struct KernelShape {
 };
 
 inline constexpr KernelShape kernel_shapes[] = {
-    {4, {8, 5}, {6, 4}},  // opaque bodies
-    {4, {7, 4}, {6, 4}},  // mirrors
-    {4, {6, 4}, {6, 4}},  // clear bodies
-    {4, {6, 4}, {6, 4}},  // colors and visible lights
-    {8, {3, 2}, {3, 2}},  // flat bodies
-    {8, {3, 2}, {3, 2}},  // balls, flat bodies, skies
-    {8, {3, 2}, {3, 2}},  // everything
-    {8, {3, 2}, {3, 2}},  // everything and a budget
-    {8, {3, 2}, {3, 2}},  // everything and layers
+    {4, {8, 5}, {6, 4}},         // opaque bodies
+    {4, {7, 4}, {6, 4}},         // mirrors
+    {4, {6, 4}, {6, 4}},         // clear bodies
+    {4, {6, 4}, {6, 4}},         // colors and visible lights
+    {8, {3, 2}, {3, 2}},         // flat bodies
+    {8, {2, 2}, {2, 2}, false},  // balls, flat bodies, skies
+    {8, {3, 2}, {3, 2}},         // everything
+    {8, {3, 2}, {3, 2}},         // everything and a budget
+    {8, {3, 2}, {3, 2}},         // everything and layers
 };
 static_assert(sizeof kernel_shapes / sizeof kernel_shapes[0] == compiled_mask_count, "a row for each mask");
 

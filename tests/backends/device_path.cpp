@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cistula/model/constant_scene.h"
+#include "cistula/traversal/ball_loop.h"
 #include "cistula/traversal/bvh.h"
 #include "render/frame/frame_view.h"
 #include "scene/compile/constant_scene.h"
@@ -86,13 +87,13 @@ bool check(const std::string& name, const SceneDescription& description, const F
     SceneView<Real> view = compiled->view();
     tree.put_into(view);
     expect_same(render_as_device<Real, Tree>(*compiled, view, description, settings), "tree");
-    using BallLoop = BruteIntersector<Real, SingleInterior, BallScene<Real>>;
     const auto small = constant_scene(view);
-    if (small && view.balls.empty())
-        expect_same(render_as_device<Real, PlainLoop>(*compiled, *small, description, settings), "plain loop");
-    else if (small)
-        expect_same(render_as_device<Real, BallLoop>(*compiled, *small, description, settings), "loop over balls");
-    return small != nullptr;
+    if (small) expect_same(render_as_device<Real, PlainLoop>(*compiled, *small, description, settings), "plain loop");
+    const auto balls = ball_scene(view, view);
+    if (balls)
+        expect_same(render_as_device<Real, BallIntersector<Real>>(*compiled, *balls, description, settings),
+                    "loop over balls");
+    return small || balls;
 }
 
 template <class Real>
@@ -187,7 +188,7 @@ TYPED_TEST(DevicePathOnHost, GivesTheIntegersOfBalls) {
     ball(scene, {0, 0.1, 1}, 0.2);
     EXPECT_FALSE(check_here(scene, "nested"));
     scene = plain;
-    for (int i = 0; i < 28; ++i) ball(scene, {0.2 * (i % 7) - 0.6, 0.2 * (i / 7), 0.1}, 0.1);
+    for (int i = 0; i < 32; ++i) ball(scene, {0.2 * (i % 8) - 0.6, 0.2 * (i / 8), 0.1}, 0.1);
     EXPECT_TRUE(check_here(scene, "as many as fit"));
     ball(scene, {0, -1, 0.1}, 0.1);
     EXPECT_FALSE(check_here(scene, "one more"));

@@ -37,9 +37,9 @@ struct InlineSpan {
 /// Which primitives a shadow ray may meet, precomputed for each pair of solid and light (plan_shadows in
 /// libcore/scene).
 struct ShadowPlan {
-    static constexpr uint32_t solids = 32;
+    static constexpr uint32_t solids = 24;
     static constexpr uint32_t lights = 8;
-    static constexpr uint32_t convex = 28;
+    static constexpr uint32_t convex = 16;
     static constexpr uint32_t clusters = 4;
     static constexpr uint32_t first_cluster = convex;
     static_assert(solids <= 32 && first_cluster + clusters <= 32);
@@ -96,20 +96,25 @@ struct ConstantScene {
     Real extent;
 };
 
-/// A ConstantScene with balls that at most touch one another and sheets, and have no kin.
+/// A small scene of balls that at most touch one another and sheets. What all threads of a warp read at once lies here,
+/// in constant memory; what each reads for its own hit lies in device memory, as constant memory would serve one
+/// address after the other.
 template <class Real>
-struct BallScene : ConstantScene<Real> {
+struct BallScene : SceneView<Real> {
+    static constexpr uint32_t most_balls = 32;
+    static constexpr uint32_t most_bodies = 8;
+    static constexpr uint32_t most_clusters = 4;
+
     /// What the search for hits reads of a ball.
     struct alignas(16) Sphere {
         Vec3<Real> center;
         Real square;  // of the radius
     };
 
-    uint32_t convex_balls;                           // bit p: convex[p] is a ball
-    InlineSpan<Sphere, ShadowPlan::convex> spheres;  // by place among `convex`; unused for other solids
-    InlineSpan<Ball<Real>, ShadowPlan::convex> balls;
-    InlineSpan<BallPlane<Real>, ShadowPlan::clusters> ball_planes;
-    Span<uint32_t> near_planes;  // as in the view that it was made from
+    InlineSpan<Sphere, most_balls> spheres;
+    InlineSpan<uint32_t, most_balls> sphere_solids;      // their solids, in ascending order
+    InlineSpan<uint32_t, most_bodies> bodies;            // the other convex solids
+    InlineSpan<SheetPlane<Real>, most_clusters> planes;  // of the clusters
 };
 
 /// Whether a scene's form has room for balls.

@@ -89,5 +89,9 @@ template <class Real>
 CISTULA_INLINE const SheetPlane<Real>& plane_of(const ConstantScene<Real>& scene, uint32_t cluster) {
     return scene.planes[cluster];
 }
+template <class Real>
+CISTULA_INLINE const SheetPlane<Real>& plane_of(const BallScene<Real>& scene, uint32_t cluster) {
+    return scene.planes[cluster];
+}
 
 }  // namespace cistula

@@ -159,9 +159,10 @@ CISTULA_INLINE Surface<Real> surface_at(const Scene& scene, const Ray<Real, Medi
             Vec3<Real> corner[3];
             triangle_corners(scene, hit.slot, corner);
             s.point = along(along(corner[0], hit.u, corner[1] - corner[0]), hit.v, corner[2] - corner[0]);
-            s.viewer_side = apex_at(scene, hit.slot, corner, s.normal, hit.enters).from(s.point);
-            if constexpr (meets_balls<E, Scene>)
-                if (is_sheet_near_ball(solid)) s.viewer_side = off_sheet(scene.extent, ray, hit.t, s.normal);
+            bool near_ball = false;
+            if constexpr (meets_balls<E, Scene>) near_ball = is_sheet_near_ball(solid);
+            s.viewer_side = near_ball ? off_sheet(scene.extent, ray, hit.t, s.normal)
+                                      : apex_at(scene, hit.slot, corner, s.normal, hit.enters).from(s.point);
             if constexpr (meets_smooth<E, Media>)
                 if (const Vec3<Real>* normals = corner_normals(scene, hit.slot)) {
                     s.smooth = true;

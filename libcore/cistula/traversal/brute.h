@@ -107,15 +107,10 @@ struct BruteIntersector {
         } else {
             const uint32_t around = E::has(effect_insides) ? ray.media.only() : no_solid;
             if constexpr (E::has(effect_insides)) {
-                if (around != no_solid) closest_around<E>(around, ray, best);
+                if (around != no_solid) closest_exit(scene, around, ray, best);
                 if (around != no_solid && scene.solids[around].isolated) return true;
             }
-            uint32_t left = ahead_of(ray) & scene.plan.all_convex;
-            if constexpr (meets_balls<E, Scene>) {
-                closest_ball_ahead(left & scene.convex_balls, around, ray, best);
-                left &= ~scene.convex_balls;
-            }
-            for (; left != 0; left &= left - 1) {
+            for (uint32_t left = ahead_of(ray) & scene.plan.all_convex; left != 0; left &= left - 1) {
                 const auto& next = scene.convex[lowest_bit(left)];
                 // One condition instead of several branches, so that all values are loaded at once.
                 if ((next.index != around) & (next.index != ray.from_solid) &
@@ -124,39 +119,6 @@ struct BruteIntersector {
             }
         }
         return false;
-    }
-
-    /// The crossing by which a ray leaves the solid that it is in.
-    template <class E>
-    CISTULA_INLINE void closest_around(uint32_t around, const Ray<Real, Media>& ray, Hit<Real>& best) const {
-        if constexpr (meets_balls<E, Scene>)
-            if (is_ball(scene.solids[around])) return closest_ball(scene, around, ray, true, false, best);
-        closest_exit(scene, around, ray, best);
-    }
-
-    /// The first of the balls in the mask `left` that a ray enters (closest_ball). Only the nearest is kept in the
-    /// loop.
-    CISTULA_INLINE void closest_ball_ahead(uint32_t left, uint32_t around, const Ray<Real, Media>& ray,
-                                           Hit<Real>& best) const {
-        const Real least = max_or_second(ray.after.t, Real(0));
-        Real nearest = RealTraits<Real>::infinity;
-        uint32_t solid = no_solid;
-        for (; left != 0; left &= left - 1) {
-            const uint32_t place = lowest_bit(left);
-            const auto& sphere = scene.spheres[place];
-            const auto chord = BallChord<Real>::of(sphere.center, sphere.square, ray.origin, ray.direction);
-            if (!chord.is_ahead) continue;
-            const Real half = chord.half();
-            const Real t = max_or_second(chord.middle - half, least);
-            const uint32_t index = scene.convex[place].index;
-            if (!(chord.middle + half > ray.after.t) || !(t < nearest) || index == around || index == ray.from_solid)
-                continue;
-            nearest = t;
-            solid = index;
-        }
-        if (solid == no_solid) return;
-        const uint64_t key = make_key(CrossingKind::enter, solid, 0);
-        if (best.improves(nearest, key)) best.take(true, nearest, key, Real(0), Real(0), 0, true);
     }
 
     template <class E>
@@ -179,27 +141,15 @@ struct BruteIntersector {
                 // Only for rays that start on the solid's own face: others may start slightly off theirs.
                 if (!E::has(effect_absorption) && from == around && (scene.plan.beyond[light] >> around & 1u) != 0)
                     sum.cross(scene.materials[scene.solids[around].material]);
-                else if (meets_balls<E, Scene> && is_ball(scene.solids[around]))
-                    add_ball(around, true, shadow, sum);
                 else
                     shadow_exit<Real, E>(scene, around, shadow, sum);
             }
         for (uint32_t left = near & scene.plan.all_convex; left != 0 && !sum.is_blocked(); left &= left - 1) {
             const auto& next = scene.convex[lowest_bit(left)];
-            if (meets_balls<E, Scene> && is_ball(next.solid)) {
-                if (next.index != around) add_ball(next.index, false, shadow, sum);
-                continue;
-            }
             if ((next.index != around) & (next.index != from) &
                 !misses_bounds(next.sphere, shadow.ray.origin, shadow.ray.direction, shadow.distance))
                 shadow_entry<Real, E>(scene, next.index, next.solid, shadow, sum);
         }
-    }
-
-    template <class E>
-    CISTULA_INLINE void add_ball(uint32_t index, bool inside, const ShadowRay<Real, Media>& shadow,
-                                 ShadowSum<E>& sum) const {
-        if constexpr (meets_balls<E, Scene>) shadow_ball<E>(scene, index, shadow, inside, !inside, sum);
     }
 
     template <class E>

@@ -1,44 +1,23 @@
 #include "scene/compile/constant_scene.h"
 
+#include <vector>
+
 #include "base/default_rounding.h"
 #include "scene/compile/scene_copies.h"
 
 namespace cistula {
 namespace {
 
-/// Whether a ray that is inside a solid is inside no other, and a hit on it is that of no other.
-template <class Real>
-bool is_by_itself(const SceneView<Real>& scene, const Solid& solid) {
-    if (!is_ball(solid)) return solid.kind != SolidKind::mesh && !solid.may_touch;
-    const Ball<Real>& ball = scene.balls[solid.first_slab];
-    return solid.isolated && ball.has_kin == 0 && ball.touched_count == ball.plane_count;
-}
-
-/// Fills what a BallScene has beside a ConstantScene, whose solids are filled.
-template <class Real>
-bool assign_balls(const SceneView<Real>& here, const SceneView<Real>& there, BallScene<Real>& to) {
-    to.near_planes = there.near_planes;
-    to.convex_balls = 0;
-    to.spheres.assign(to.convex.size, [&](uint32_t place) -> typename BallScene<Real>::Sphere {
-        const Solid& solid = to.convex[place].solid;
-        if (!is_ball(solid)) return {};
-        to.convex_balls |= 1u << place;
-        const Ball<Real>& ball = here.balls[solid.first_slab];
-        return {ball.center, ball.radius * ball.radius};
-    });
-    return to.balls.assign(here.balls) && to.ball_planes.assign(here.ball_planes);
-}
-
 /// Fills `to`; false if the scene does not fit.
 template <class Real>
-bool assign(const SceneView<Real>& here, const SceneView<Real>& there, BallScene<Real>& to) {
-    if (!here.shared_planes.empty() || !here.normals.empty()) return false;
+bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantScene<Real>& to) {
+    if (!here.shared_planes.empty() || !here.balls.empty() || !here.normals.empty()) return false;
     for (const Solid& solid : here.solids)
-        if (!is_by_itself(here, solid)) return false;
+        if (solid.kind == SolidKind::mesh || solid.may_touch) return false;
     if (!to.solids.assign(here.solids) || !to.slabs.assign(here.slabs) ||
         !to.convex.assign(here.convex.size, [&](uint32_t i) { return indexed_solid(here, here.convex[i]); }) ||
         !to.clusters.assign(here.clusters) || !to.materials.assign(here.materials) || !to.lights.assign(here.lights) ||
-        !to.textures.assign(here.textures) || !assign_balls(here, there, to))
+        !to.textures.assign(here.textures))
         return false;
     to.slab_groups = there.slab_groups;
     to.facets = there.facets;
@@ -69,12 +48,40 @@ bool assign(const SceneView<Real>& here, const SceneView<Real>& there, BallScene
     return true;
 }
 
+/// Whether a ray that is inside a solid is inside no other, and a hit on it is that of no other.
+template <class Real>
+bool is_by_itself(const SceneView<Real>& scene, const Solid& solid) {
+    if (!is_ball(solid)) return solid.kind != SolidKind::mesh && !solid.may_touch;
+    const Ball<Real>& ball = scene.balls[solid.first_slab];
+    return solid.isolated && ball.has_kin == 0 && ball.touched_count == ball.plane_count;
+}
+
 }  // namespace
 
 template <class Real>
-std::unique_ptr<BallScene<Real>> constant_scene(const SceneView<Real>& here, const SceneView<Real>& there) {
-    return in_default_rounding([&]() -> std::unique_ptr<BallScene<Real>> {
-        auto scene = std::make_unique<BallScene<Real>>();
+std::unique_ptr<BallScene<Real>> ball_scene(const SceneView<Real>& here, const SceneView<Real>& there) {
+    using Scene = BallScene<Real>;
+    if (here.balls.empty() || !here.shared_planes.empty() || !here.normals.empty()) return nullptr;
+    for (const Solid& solid : here.solids)
+        if (!is_by_itself(here, solid)) return nullptr;
+    std::vector<uint32_t> balls, bodies;
+    for (const uint32_t solid : here.convex) (is_ball(here.solids[solid]) ? balls : bodies).push_back(solid);
+    auto scene = std::make_unique<Scene>(Scene{there, {}, {}, {}, {}});
+    const auto sphere = [&](uint32_t i) -> typename Scene::Sphere {
+        const Ball<Real>& ball = here.balls[here.solids[balls[i]].first_slab];
+        return {ball.center, ball.radius * ball.radius};
+    };
+    const bool fits = scene->spheres.assign(uint32_t(balls.size()), sphere) &&
+                      scene->sphere_solids.assign(uint32_t(balls.size()), [&](uint32_t i) { return balls[i]; }) &&
+                      scene->bodies.assign(uint32_t(bodies.size()), [&](uint32_t i) { return bodies[i]; }) &&
+                      scene->planes.assign(here.clusters.size, [&](uint32_t i) { return boxed_plane(here, i); });
+    return fits ? std::move(scene) : nullptr;
+}
+
+template <class Real>
+std::unique_ptr<ConstantScene<Real>> constant_scene(const SceneView<Real>& here, const SceneView<Real>& there) {
+    return in_default_rounding([&]() -> std::unique_ptr<ConstantScene<Real>> {
+        auto scene = std::make_unique<ConstantScene<Real>>();
         if (!assign(here, there, *scene)) return nullptr;
         plan_shadows(here, scene->plan);
         return scene;
@@ -83,12 +90,14 @@ std::unique_ptr<BallScene<Real>> constant_scene(const SceneView<Real>& here, con
 
 template <class Real>
 bool fits_constant_scene(const SceneView<Real>& scene) {
-    return assign(scene, scene, *std::make_unique<BallScene<Real>>());
+    return assign(scene, scene, *std::make_unique<ConstantScene<Real>>());
 }
 
+template std::unique_ptr<BallScene<float>> ball_scene(const SceneView<float>&, const SceneView<float>&);
+template std::unique_ptr<BallScene<double>> ball_scene(const SceneView<double>&, const SceneView<double>&);
 template bool fits_constant_scene(const SceneView<float>&);
 template bool fits_constant_scene(const SceneView<double>&);
-template std::unique_ptr<BallScene<float>> constant_scene(const SceneView<float>&, const SceneView<float>&);
-template std::unique_ptr<BallScene<double>> constant_scene(const SceneView<double>&, const SceneView<double>&);
+template std::unique_ptr<ConstantScene<float>> constant_scene(const SceneView<float>&, const SceneView<float>&);
+template std::unique_ptr<ConstantScene<double>> constant_scene(const SceneView<double>&, const SceneView<double>&);
 
 }  // namespace cistula

@@ -74,7 +74,7 @@ Body body_of(const SceneView<Real>& scene, uint32_t index) {
     const Solid& solid = scene.solids[index];
     Body body;
     if (solid.kind == SolidKind::convex) {
-        if (!is_ball(solid) && solid.slab_count <= most_slabs) body.points = corners_of(solid_planes(scene, solid));
+        if (solid.slab_count <= most_slabs) body.points = corners_of(solid_planes(scene, solid));
         if (body.points.empty()) body = {{dvec3(solid.center)}, std::sqrt(double(solid.padded_square))};
         return body;
     }
@@ -97,10 +97,7 @@ void plan_shadows(const SceneView<Real>& scene, ShadowPlan& plan) {
         plan.beyond[l] = 0;
         for (uint32_t i = 0; i < scene.solids.size; ++i) {
             const Solid& from = scene.solids[i];
-            if (is_ball(from)) {
-                const Ball<Real>& ball = scene.balls[from.first_slab];
-                if (length(light - dvec3(ball.center)) > double(ball.radius) + margin) plan.beyond[l] |= 1u << i;
-            } else if (from.kind == SolidKind::convex)
+            if (from.kind == SolidKind::convex)
                 for (const SolidPlane& plane : solid_planes(scene, from))
                     if (dot(plane.normal, light) > plane.offset + margin) plan.beyond[l] |= 1u << i;
             if (bodies[i].points.empty()) continue;
