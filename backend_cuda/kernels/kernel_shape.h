@@ -35,7 +35,7 @@ inline constexpr KernelShape kernel_shapes[] = {
     {4, {6, 4}, {6, 4}},         // clear bodies
     {4, {6, 4}, {6, 4}},         // colors and visible lights
     {8, {3, 2}, {3, 2}},         // flat bodies
-    {8, {2, 2}, {2, 2}, false},  // balls, flat bodies, skies
+    {4, {4, 4}, {6, 4}, false},  // balls, flat bodies, skies
     {8, {3, 2}, {3, 2}},         // everything
     {8, {3, 2}, {3, 2}},         // everything and a budget
     {8, {3, 2}, {3, 2}},         // everything and layers

@@ -56,7 +56,9 @@ Film render_as_device(const CompiledScene<Real>& compiled, const typename Inters
     // Few masks stand for all, which spares the compiler half of its work; tests of their own compare masks.
     constexpr int opaque = 0, middle = 2;
     const int least = mask_to_run(compiled.effects, settings, frame);
-    if (least <= opaque)
+    if constexpr (requires { Intersector::few_are_lit; })
+        render_shared<Real, Effects<effect_masks[ball_mask]>>(scene, frame, intersector, film);
+    else if (least <= opaque)
         render_shared<Real, Effects<effect_masks[opaque]>>(scene, frame, intersector, film);
     else if (least <= middle)
         render_shared<Real, Effects<effect_masks[middle]>>(scene, frame, intersector, film);
@@ -90,7 +92,8 @@ bool check(const std::string& name, const SceneDescription& description, const F
     const auto small = constant_scene(view);
     if (small) expect_same(render_as_device<Real, PlainLoop>(*compiled, *small, description, settings), "plain loop");
     const auto balls = ball_scene(view, view);
-    if (balls)
+    const FrameView frame = frame_view(*compiled, camera_at(description.camera, 0), settings);
+    if (balls && mask_to_run(compiled->effects, settings, frame) == ball_mask)
         expect_same(render_as_device<Real, BallIntersector<Real>>(*compiled, *balls, description, settings),
                     "loop over balls");
     return small || balls;

@@ -229,4 +229,20 @@ CISTULA_INLINE int64_t claim_word(int64_t& word, int64_t value) {
 #endif
 }
 
+/// The threads of a warp that come here together, which may vote as long as they stay together. On the host a thread is
+/// by itself.
+class TogetherThreads {
+  public:
+#if CISTULA_ON_DEVICE
+    CISTULA_INLINE TogetherThreads() : threads_(__activemask()) {}
+    /// How many of them it is true for.
+    CISTULA_INLINE int count(bool yes) const { return __popc(__ballot_sync(threads_, yes)); }
+
+  private:
+    const unsigned int threads_;
+#else
+    CISTULA_INLINE int count(bool yes) const { return yes; }
+#endif
+};
+
 }  // namespace cistula

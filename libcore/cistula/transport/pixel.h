@@ -324,6 +324,8 @@ CISTULA_INLINE bool render_sample(const PixelTask<E, Intersector, Stack>& task, 
     if constexpr (E::has(fills_layers))
         tree.trace(
             ray, LayeredFirstSeen<Real, typename Task::Scene>{seen, task.scene, frame.layers, layers, task.work.flags});
+    else if constexpr (requires { Intersector::few_are_lit; } && !E::has(keeps_budget))
+        tree.trace_together(ray, seen);
     else
         tree.trace(ray, seen);
     if constexpr (E::has(keeps_budget)) return sums.left() >= 0;

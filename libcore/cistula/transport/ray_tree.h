@@ -100,6 +100,43 @@ class RayTree {
         } while (next(branch));
     }
 
+    /// Traces a tree as trace() does, for threads that start together: those that meet a lit surface wait for its light
+    /// until no fewer wait than search. For trees in which few surfaces are lit.
+    template <SeesFirst<Real, E, Scene, Media> First>
+    CISTULA_INLINE void trace_together(const Ray<Real, Media>& primary, const First& first) {
+        static_assert(!E::has(keeps_budget | fills_layers), "the light of a branch is added after others are followed");
+        const TogetherThreads all;
+        Entry branch, lit;
+        branch.ray = primary;
+        SurfaceEvent<Real, Media> lit_event;
+        Surface<Real> lit_surface;
+        bool follows = true, waits = false, at_first = true;
+        for (uint32_t turns = 1;; ++turns) {
+            if (follows && !waits) {
+                SurfaceEvent<Real, Media> event;
+                VisibleLightHit<Real> light;
+                if (line_.find(branch, event, light)) {
+                    const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, event.hit);
+                    if (at_first) first.surface(event.hit, s);
+                    leave(branch, true, event, s);
+                    waits = material_of(scene_, s).local > Real(0);
+                    if (waits) lit = branch, lit_event = event, lit_surface = s;
+                } else if constexpr (E::has(effect_visible_lights)) {
+                    if (at_first && light.found()) first.light(scene_, light, branch.ray);
+                }
+                at_first = false;
+                follows = next(branch);
+            }
+            if (turns % turns_between_stops == 0 && stack_.stopped()) stack_.clear(), follows = waits = false;
+            const int waiting = all.count(waits);
+            const int searching = all.count(follows && !waits);
+            if (waiting + searching == 0) return;
+            if (waiting < searching) continue;
+            if (waits) add_light(lit, true, lit_event, lit_surface);
+            waits = false;
+        }
+    }
+
     /// Traces a branch of a tree and all that comes from it, as trace() does.
     template <SeesFirst<Real, E, Scene, Media> First>
     CISTULA_INLINE void trace_branch(Entry& branch, const First& first) {
@@ -169,12 +206,20 @@ class RayTree {
         }
     }
 
-    /// Adds a face's local light. The children are pushed before the lights are evaluated, so that nothing of the
-    /// branch has to be kept.
+    /// Pushes a face's children and adds its local light. The children are pushed before the lights are evaluated, so
+    /// that nothing of the branch has to be kept.
     CISTULA_INLINE void shade(const Entry& branch, const MaskOf<Real>& active, const SurfaceEvent<Real, Media>& event,
+                              const Surface<Real>& s) {
+        leave(branch, active, event, s);
+        add_light(branch, active, event, s);
+    }
+    CISTULA_INLINE void leave(const Entry& branch, const MaskOf<Real>& active, const SurfaceEvent<Real, Media>& event,
                               const Surface<Real>& s) {
         if (any(active & !is_finite(s.normal))) sums_.flag(flag_not_finite);
         if constexpr (E::has(effect_reflection | effect_transmission)) send_on(branch, active, event, s);
+    }
+    CISTULA_INLINE void add_light(const Entry& branch, const MaskOf<Real>& active,
+                                  const SurfaceEvent<Real, Media>& event, const Surface<Real>& s) {
         const Real local = material_of(scene_, s).local;
         const MaskOf<Real> lit = active & (local > Real(0));
         if (any(lit))

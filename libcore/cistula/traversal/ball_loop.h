@@ -9,6 +9,7 @@ template <class Real>
 struct BallIntersector {
     using Media = SingleInterior;
     using Scene = BallScene<Real>;
+    static constexpr bool few_are_lit = true;  // surfaces: RayTree::trace_together
     const Scene& scene;
 
     /// The hit with the smallest (t, key) after ray.after.
