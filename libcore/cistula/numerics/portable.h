@@ -236,12 +236,16 @@ class TogetherThreads {
 #if CISTULA_ON_DEVICE
     CISTULA_INLINE TogetherThreads() : threads_(__activemask()) {}
     /// How many of them it is true for.
-    CISTULA_INLINE int count(bool yes) const { return __popc(__ballot_sync(threads_, yes)); }
+    CISTULA_INLINE int count(bool yes) const {
+        return __popc(__ballot_sync(threads_, yes));
+    }
 
   private:
     const unsigned int threads_;
 #else
-    CISTULA_INLINE int count(bool yes) const { return yes; }
+    CISTULA_INLINE int count(bool yes) const {
+        return yes;
+    }
 #endif
 };
 
