@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "backend_cuda/host/cuda_renderer.h"
 #include "render/record/film_difference.h"
 #include "scene/description/camera_path.h"
@@ -10,15 +12,10 @@
 namespace cistula::bench {
 namespace {
 
-/// Adds the kernels' times of a frame of 3840x2160 and returns its film.
+/// Adds the kernels' times of a frame and returns its film.
 Film time_frame(GpuRecord& record, const std::string& name, Renderer& renderer, const SceneDescription& scene,
-                int depth, int supersample, int runs, const KeptParts& parts) {
+                const FrameSettings& settings, int runs) {
     constexpr int warm_up = 3;
-    FrameSettings settings;
-    settings.set_size(3840, 2160);
-    settings.depth = depth;
-    settings.supersample = supersample;
-    settings.parts = parts;
     Film film;
     Timing time;
     for (int run = -warm_up; run < runs; ++run) {
@@ -26,8 +23,17 @@ Film time_frame(GpuRecord& record, const std::string& name, Renderer& renderer, 
         renderer.render(camera_at(scene.camera, 0), settings, film, progress);
         if (run >= 0) time.runs.push_back(renderer.times().kernel * 1e3);
     }
-    record.add_times("benchmark.json/3840x2160/" + name, time, {{"rays", film.rays.total()}});
+    record.add_times(name, time, {{"rays", film.rays.total()}});
     return film;
+}
+
+FrameSettings settings_of(int width, int height, int depth, int supersample, const KeptParts& parts = {}) {
+    FrameSettings settings;
+    settings.set_size(width, height);
+    settings.depth = depth;
+    settings.supersample = supersample;
+    settings.parts = parts;
+    return settings;
 }
 
 }  // namespace
@@ -37,11 +43,15 @@ void time_frames(GpuRecord& record, const std::string& folder, int runs) {
     const auto time_depths = [&]<class Real>(Real) {
         const auto renderer = make_cuda_renderer<Real>(compile_scene<Real>(scene));
         for (const int depth : {4, 8})
-            time_frame(record, fmt::format("depth:{}/{}", depth, RealTraits<Real>::name), *renderer, scene, depth, 1,
-                       runs, {false, false});
+            time_frame(record, fmt::format("benchmark.json/3840x2160/depth:{}/{}", depth, RealTraits<Real>::name),
+                       *renderer, scene, settings_of(3840, 2160, depth, 1, {false, false}), runs);
     };
     time_depths(float());
     time_depths(double());
+    const SceneDescription balls = read_scene(folder + "/scenes/spheres.json");
+    const auto renderer = make_cuda_renderer<float>(compile_scene<float>(balls));
+    time_frame(record, "spheres.json/640x360/3x3/depth:12/float", *renderer, balls, settings_of(640, 360, 12, 3),
+               std::min(runs, 5));
 }
 
 void time_devices(GpuRecord& record, const std::string& folder, int runs) {
@@ -55,8 +65,9 @@ void time_devices(GpuRecord& record, const std::string& folder, int runs) {
         options.devices.clear();
         for (size_t d = 0; d < count; ++d) options.devices.push_back(int(d));
         const auto renderer = make_cuda_renderer<float>(compiled, options);
-        const Film film = time_frame(record, fmt::format("{0}x{0}/depth:8/float/devices:{1}", samples, count),
-                                     *renderer, scene, 8, samples, runs, {});
+        const Film film = time_frame(
+            record, fmt::format("benchmark.json/3840x2160/{0}x{0}/depth:8/float/devices:{1}", samples, count),
+            *renderer, scene, settings_of(3840, 2160, 8, samples), runs);
         if (count == 1)
             hash = record_hash(film);
         else
