@@ -112,7 +112,7 @@ def gpu_bars(add, records):
             add(f"kernel-ms/3840x2160/{frame}", records.time(picture + frame))
             if records.has("fast/"):
                 add(f"exact-over-fast/3840x2160/{frame}", records.ratio(picture + frame, "fast/" + picture + frame))
-    balls = "spheres.json/640x360/3x3/depth:12/float"
+    balls = "spheres.json/1280x720/3x3/depth:12/float"
     if records.has(balls):
         add("rays-a-second/spheres", records.named(balls)[0]["rays"] / (records.time(balls) / 1e3), ">=1e9")
     heavy = f"{picture}6x6/depth:8/float/devices:"

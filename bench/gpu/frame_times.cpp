@@ -50,7 +50,7 @@ void time_frames(GpuRecord& record, const std::string& folder, int runs) {
     time_depths(double());
     const SceneDescription balls = read_scene(folder + "/scenes/spheres.json");
     const auto renderer = make_cuda_renderer<float>(compile_scene<float>(balls));
-    time_frame(record, "spheres.json/640x360/3x3/depth:12/float", *renderer, balls, settings_of(640, 360, 12, 3),
+    time_frame(record, "spheres.json/1280x720/3x3/depth:12/float", *renderer, balls, settings_of(1280, 720, 12, 3),
                std::min(runs, 5));
 }
 
