@@ -309,6 +309,7 @@ TYPED_TEST(CompileScene, MaterialsByHand) {
     scene.materials.push_back(samples::material("clear", 0, 1));
     scene.materials.push_back(samples::material("full", 0.9, 0.1));
     scene.materials[2].exponent = 2.5;
+    scene.materials[2].specular = 0.1;
     add_object(scene, solid(PlatonicSolid::cube, glm::dvec3{0}, 8));
     add_object(scene, solid(PlatonicSolid::cube, glm::dvec3{0}, 4), 1);
     add_object(scene, solid(PlatonicSolid::cube, glm::dvec3{0}, 2), 2);
@@ -327,6 +328,7 @@ TYPED_TEST(CompileScene, MaterialsByHand) {
     EXPECT_EQ(compiled->materials[1].transparency, Transparency::clear);
     EXPECT_EQ(compiled->materials[1].filter_loss[2], 0u);
     EXPECT_EQ(compiled->materials[2].local, Real(0));
+    EXPECT_EQ(compiled->materials[1].integer_exponent, 0) << "there is no highlight";
     EXPECT_EQ(compiled->materials[2].integer_exponent, -1);
     EXPECT_EQ(compiled->materials[2].exponent, Real(2.5));
 }
