@@ -91,7 +91,7 @@ class Check:
         self.root, self.build, self.scratch = root, build, scratch
         self.faults: list[str] = []
         self.matched: set[str] = set()
-        venv = root / "build/python/bin"
+        venv = build.parent / "python/bin"
         has_package = venv.exists() and (build / "python").exists()
         self.not_run = NOT_RUN if has_package else NOT_RUN | {WITHOUT_PACKAGE: "the build has no Python package"}
         (scratch / "bin").mkdir()
