@@ -1,5 +1,6 @@
 #include "scene/compile/constant_scene.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "base/default_rounding.h"
@@ -8,12 +9,26 @@
 namespace cistula {
 namespace {
 
+/// Whether a ray that is inside a solid is inside no other, and a hit on it is that of no other.
+template <class Real>
+bool is_by_itself(const SceneView<Real>& scene, const Solid& solid) {
+    if (!is_ball(solid)) return solid.kind != SolidKind::mesh && !solid.may_touch;
+    const Ball<Real>& ball = scene.balls[solid.first_slab];
+    return solid.isolated && ball.has_kin == 0 && ball.touched_count == ball.plane_count;
+}
+
+/// Whether a SingleInterior says all about a scene's rays, and no mesh is smooth.
+template <class Real>
+bool has_single_interiors(const SceneView<Real>& scene) {
+    return scene.shared_planes.empty() && scene.normals.empty() &&
+           std::all_of(scene.solids.begin(), scene.solids.end(),
+                       [&](const Solid& solid) { return is_by_itself(scene, solid); });
+}
+
 /// Fills `to`; false if the scene does not fit.
 template <class Real>
 bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantScene<Real>& to) {
-    if (!here.shared_planes.empty() || !here.balls.empty() || !here.normals.empty()) return false;
-    for (const Solid& solid : here.solids)
-        if (solid.kind == SolidKind::mesh || solid.may_touch) return false;
+    if (!here.balls.empty() || !has_single_interiors(here)) return false;
     if (!to.solids.assign(here.solids) || !to.slabs.assign(here.slabs) ||
         !to.convex.assign(here.convex.size, [&](uint32_t i) { return indexed_solid(here, here.convex[i]); }) ||
         !to.clusters.assign(here.clusters) || !to.materials.assign(here.materials) || !to.lights.assign(here.lights) ||
@@ -48,34 +63,30 @@ bool assign(const SceneView<Real>& here, const SceneView<Real>& there, ConstantS
     return true;
 }
 
-/// Whether a ray that is inside a solid is inside no other, and a hit on it is that of no other.
+/// Fills `to`, a copy of the view where kernels read it; false if the scene does not fit.
 template <class Real>
-bool is_by_itself(const SceneView<Real>& scene, const Solid& solid) {
-    if (!is_ball(solid)) return solid.kind != SolidKind::mesh && !solid.may_touch;
-    const Ball<Real>& ball = scene.balls[solid.first_slab];
-    return solid.isolated && ball.has_kin == 0 && ball.touched_count == ball.plane_count;
+bool assign(const SceneView<Real>& here, BallScene<Real>& to) {
+    if (here.balls.empty() || !has_single_interiors(here)) return false;
+    std::vector<uint32_t> balls, bodies;
+    for (const uint32_t solid : here.convex) (is_ball(here.solids[solid]) ? balls : bodies).push_back(solid);
+    const auto sphere = [&](uint32_t i) -> typename BallScene<Real>::Sphere {
+        const Ball<Real>& ball = here.balls[here.solids[balls[i]].first_slab];
+        return {ball.center, ball.radius * ball.radius};
+    };
+    return to.spheres.assign(uint32_t(balls.size()), sphere) &&
+           to.sphere_solids.assign(uint32_t(balls.size()), [&](uint32_t i) { return balls[i]; }) &&
+           to.bodies.assign(uint32_t(bodies.size()), [&](uint32_t i) { return bodies[i]; }) &&
+           to.planes.assign(here.clusters.size, [&](uint32_t i) { return boxed_plane(here, i); });
 }
 
 }  // namespace
 
 template <class Real>
 std::unique_ptr<BallScene<Real>> ball_scene(const SceneView<Real>& here, const SceneView<Real>& there) {
-    using Scene = BallScene<Real>;
-    if (here.balls.empty() || !here.shared_planes.empty() || !here.normals.empty()) return nullptr;
-    for (const Solid& solid : here.solids)
-        if (!is_by_itself(here, solid)) return nullptr;
-    std::vector<uint32_t> balls, bodies;
-    for (const uint32_t solid : here.convex) (is_ball(here.solids[solid]) ? balls : bodies).push_back(solid);
-    auto scene = std::make_unique<Scene>(Scene{there, {}, {}, {}, {}});
-    const auto sphere = [&](uint32_t i) -> typename Scene::Sphere {
-        const Ball<Real>& ball = here.balls[here.solids[balls[i]].first_slab];
-        return {ball.center, ball.radius * ball.radius};
-    };
-    const bool fits = scene->spheres.assign(uint32_t(balls.size()), sphere) &&
-                      scene->sphere_solids.assign(uint32_t(balls.size()), [&](uint32_t i) { return balls[i]; }) &&
-                      scene->bodies.assign(uint32_t(bodies.size()), [&](uint32_t i) { return bodies[i]; }) &&
-                      scene->planes.assign(here.clusters.size, [&](uint32_t i) { return boxed_plane(here, i); });
-    return fits ? std::move(scene) : nullptr;
+    return in_default_rounding([&]() -> std::unique_ptr<BallScene<Real>> {
+        auto scene = std::make_unique<BallScene<Real>>(BallScene<Real>{there, {}, {}, {}, {}});
+        return assign(here, *scene) ? std::move(scene) : nullptr;
+    });
 }
 
 template <class Real>
