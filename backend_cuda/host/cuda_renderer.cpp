@@ -53,7 +53,6 @@ class CudaRenderer : public Renderer {
         times_ = {};
         prepare_film(film, settings, *scene_, camera);
         const bool others_follow = !expected_.empty();
-        if (settings.layers.any()) take_tree();
         if (begun_.empty() || !same(begun_.front().camera, camera) || begun_.front().settings != settings) {
             if (!begun_.empty())
                 drop();
@@ -188,8 +187,11 @@ class CudaRenderer : public Renderer {
         return plan;
     }
 
-    /// Whether there is a kernel of the mask for the path that the scene has.
-    bool has_kernel(const FramePlan& plan) const { return path_ != DevicePath::ball_loop || plan.mask == ball_mask; }
+    /// Whether there is a kernel of the mask for the path that the scene has (launch_mask).
+    bool has_kernel(const FramePlan& plan) const {
+        if (path_ == DevicePath::ball_loop) return plan.mask == ball_mask;
+        return path_ == DevicePath::tree || plan.mask != layered_mask;
+    }
 
     /// Divides a frame into parts of `strips` strips for each device, at most.
     static void divide(FramePlan& plan, int strips) {

@@ -103,10 +103,7 @@ class FrameTask {
             throw Error(ErrorKind::usage, "this intersector has no layers");
         if (in_lanes != nullptr && camera_fits_lanes()) tiles_ = tile_functions(*in_lanes, settings.lanes);
         mask_ = mask_to_run(compiled.effects, settings, frame_);
-        if (mask_ != layered_mask)
-            mask_ = tiles_ == nullptr           ? limited_mask
-                    : mask_ < effect_mask_count ? lane_masks[least_lane_mask(mask_)]
-                                                : mask_;
+        if (mask_ < effect_mask_count) mask_ = tiles_ != nullptr ? lane_masks[least_lane_mask(mask_)] : limited_mask;
     }
 
     /// The effects that are compiled into the code that runs.
