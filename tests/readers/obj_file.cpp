@@ -137,7 +137,23 @@ TEST(ObjFile, TextureCoordinatesBelongToCorners) {
     const auto meshes = read_quietly(square + "vt 0.5\nvt 1 0.25\nvt 0 1 0\nvn 0 0 1\nf 1/1 2/2/1 3/-1\nf 1 3 4\n");
     EXPECT_EQ(meshes.at(0).uvs, (std::vector<dvec2>{{0.5, 0}, {1, 0.25}, {0, 1}, {0, 0}, {0, 0}, {0, 0}}));
     EXPECT_TRUE(read_quietly(square + "vt 0 0\nf 1 2 3\n").at(0).uvs.empty());
-    expect_obj_refused("vt nan 0\n", "a.obj:1: a texture coordinate is not finite");
+}
+
+TEST(ObjFile, WhatNoFaceUsesMayBeUnusable) {
+    const std::string rows =
+        square + "vt nan 0\nvt 0 0\nvt x\nvt\nvt 0 inf\nvn 1.#IND 0 0\nvn 0 0 1\nvn 0 1\nvn 1e400 0 0\n";
+    const auto meshes = read_quietly(rows + "f 1/2/2 2/2/2 3/2/2\n");
+    EXPECT_EQ(meshes.at(0).uvs, std::vector<dvec2>(3));
+    EXPECT_EQ(meshes.at(0).normals, std::vector<dvec3>(3, dvec3(0, 0, 1)));
+    for (const char* first : {"1/1", "1/-5"})
+        expect_obj_refused(rows + "f " + first + " 2/2 3/2\n", "a.obj:5: a texture coordinate is not finite");
+    expect_obj_refused("f 1/5 2/2 3/2\n" + rows, "a.obj:10: a texture coordinate is not finite");
+    for (const char* number : {"3", "4"})
+        expect_obj_refused(rows + "f 1/2 2/2 3/" + number + "\n",
+                           std::string("a.obj:") + (*number == '3' ? "7" : "8") + ": expected one number or more");
+    expect_obj_refused(rows + "f 1//1 2//2 3//2\n", "a.obj:10: expected three numbers, of a normal that a face uses");
+    expect_obj_refused(rows + "f 1//2 2//2 3//3\n", "a.obj:12: expected three numbers");
+    expect_obj_refused(rows + "f 1//2 2//2 3//4\n", "a.obj:13: expected three numbers");
 }
 
 TEST(ObjFile, ObjectsGroupsAndMaterialsBeginParts) {
@@ -230,7 +246,6 @@ TEST(ObjFile, MaterialsOfLibraries) {
     };
     refused("map_Kd x.png\n", "m.mtl:1: 'map_Kd' before the first newmtl");
     refused("# nothing\nKd 1 1 1\nnewmtl a\n", "m.mtl:2: 'Kd' before the first newmtl");
-    refused("newmtl\n", "m.mtl:1: expected \"newmtl\" and a name");
     refused("newmtl a\nKd 1 1\n", "m.mtl:2: Kd needs a number from 0 to 1e30");
     refused("newmtl a\nKd 1 -1 1\n", "m.mtl:2: Kd: expected a number from 0 to 1e30, found '-1'");
     refused("newmtl a\nNs nan\n", "m.mtl:2: Ns: expected a number from 0 to 1000000, found 'nan'");
@@ -240,6 +255,16 @@ TEST(ObjFile, MaterialsOfLibraries) {
     refused("newmtl a\nNi inf\n", "m.mtl:2: Ni: expected a number from 0 to 100, found 'inf'");
     refused("newmtl a\nd 1.5\n", "m.mtl:2: d: expected a number from 0 to 1, found '1.5'");
     refused("newmtl a\nillum\n", "m.mtl:2: illum needs a number");
+}
+
+TEST(ObjFile, AMaterialMayHaveNoName) {
+    ObjFolder folder;
+    EXPECT_EQ(folder.material("newmtl\nKd 0 0 1\nnewmtl a\nKd 1 0 0\n").color, dvec3(1, 0, 0));
+    folder.files["m.mtl"] = "newmtl unnamed\nnewmtl  \nKd 0 0 1\n";
+    const auto meshes = folder.read("mtllib m.mtl\n" + square + "usemtl unnamed\nf 1 2 3\nusemtl\nf 1 3 4\n");
+    EXPECT_EQ(meshes.at(1).material.value().color, dvec3(0, 0, 1));
+    EXPECT_EQ(meshes.at(1).material.value().name, "unnamed_") << "mattes tell it from the other";
+    EXPECT_EQ(folder.warnings, std::vector<std::string>());
 }
 
 TEST(ObjFile, LightThatPassesIsTintedByTfOrKd) {

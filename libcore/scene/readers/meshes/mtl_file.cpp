@@ -86,9 +86,7 @@ class MtlReader {
                 read_statement(lines_.words()[0]);
                 continue;
             }
-            const std::string name = utf8_name(lines_.rest(1));
-            if (name.empty()) fail("expected \"newmtl\" and a name");
-            material_ = &all_[name];
+            material_ = &all_[utf8_name(lines_.rest(1))];  // some exporters give none
         }
         for (const auto& [name, statements] : all_) {
             const MaterialDescription material = material_of(name, statements);

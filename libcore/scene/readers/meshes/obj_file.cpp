@@ -29,6 +29,13 @@ struct Group {
     bool has_normals = false;
 };
 
+/// A `vt` or a `vn` that no face may use, and what it was expected to be.
+struct UnusableRow {
+    uint32_t number;  // from 0, among all
+    int line;
+    const char* fault;
+};
+
 /// The largest index from 1 that faces have named, and where: what it names may come later.
 struct LargestIndex {
     uint64_t index = 0;
@@ -73,11 +80,16 @@ class ObjReader {
             positions_.push_back({number(1), number(2), number(3)});
             for (size_t i = 4; i < lines_.words().size(); ++i) number(i);  // a weight, a color
         } else if (key == "vt") {
-            uvs_.push_back({number(1), lines_.words().size() > 2 ? number(2) : 0});
-            if (!std::isfinite(uvs_.back().x) || !std::isfinite(uvs_.back().y))
-                fail("a texture coordinate is not finite");
+            const bool has_v = lines_.words().size() > 2;
+            note_unless(has_numbers(has_v ? 2 : 1), uvs_.size(), unusable_uvs_,
+                        "expected one number or more, of a texture coordinate that a face uses");
+            uvs_.push_back({number_or_nan(1), has_v ? number_or_nan(2) : 0});
+            note_unless(std::isfinite(uvs_.back().x) && std::isfinite(uvs_.back().y), uvs_.size() - 1, unusable_uvs_,
+                        "a texture coordinate is not finite");
         } else if (key == "vn") {
-            normals_.push_back({number(1), number(2), number(3)});
+            note_unless(has_numbers(3), normals_.size(), unusable_normals_,
+                        "expected three numbers, of a normal that a face uses");
+            normals_.push_back({number_or_nan(1), number_or_nan(2), number_or_nan(3)});
         } else if (key == "s") {
             has_smoothing_groups_ |= lines_.rest(1) != "off" && lines_.rest(1) != "0";
         } else if (key == "f") {
@@ -101,6 +113,31 @@ class ObjReader {
         const auto value = decimal<double>(words[i]);
         if (!value) fail(fmt::format("expected a number, found {}", quoted(words[i])));
         return *value;
+    }
+
+    bool has_numbers(size_t count) const {
+        for (size_t i = 1; i <= count; ++i)
+            if (i >= lines_.words().size() || !decimal<double>(lines_.words()[i])) return false;
+        return true;
+    }
+
+    double number_or_nan(size_t i) const {
+        return i < lines_.words().size() ? decimal<double>(lines_.words()[i]).value_or(NAN) : NAN;
+    }
+
+    /// Notes that a face must not use the line, unless it may.
+    void note_unless(bool is_usable, size_t number, std::vector<UnusableRow>& rows, const char* fault) const {
+        if (!is_usable) rows.push_back({static_cast<uint32_t>(number), lines_.line(), fault});
+    }
+
+    /// Throws if corners use what must not be used.
+    void check_used(const std::vector<uint32_t>& corners, const std::vector<UnusableRow>& rows) const {
+        if (rows.empty()) return;
+        for (const uint32_t number : corners) {
+            const auto row = std::lower_bound(rows.begin(), rows.end(), number,
+                                              [](const UnusableRow& a, uint32_t b) { return a.number < b; });
+            if (row != rows.end() && row->number == number) fail_at(row->line, row->fault);
+        }
     }
 
     void change(std::string& current, std::string to) {
@@ -163,6 +200,10 @@ class ObjReader {
         }
         const std::string& other = surroundings_.default_library;
         if (!missing_libraries_.empty() && surroundings_.has(other)) read_library(other);
+        const auto nameless = library_.materials.find("");
+        if (nameless == library_.materials.end()) return;
+        std::string& name = nameless->second.name = "unnamed";  // for mattes
+        while (library_.materials.contains(name)) name += '_';
     }
 
     void read_library(const std::string& name) {
@@ -176,12 +217,16 @@ class ObjReader {
     }
 
     PolygonMesh mesh_of(Group& group) {
+        check_used(group.uvs, unusable_uvs_);
+        check_used(group.normals, unusable_normals_);
         PolygonMesh mesh;
         mesh.name = group.name;
-        if (!group.material.empty()) {
-            const auto known = library_.materials.find(group.material);
-            if (known == library_.materials.end()) missing_materials_.add(group.material);
-            mesh.material = known == library_.materials.end() ? default_obj_material(group.material) : known->second;
+        const auto known = library_.materials.find(group.material);
+        if (known != library_.materials.end()) {
+            mesh.material = known->second;
+        } else if (!group.material.empty()) {
+            missing_materials_.add(group.material);
+            mesh.material = default_obj_material(group.material);
         }
         mesh.vertices.reserve(group.vertices.size());
         for (const uint32_t v : group.vertices) mesh.vertices.push_back(positions_[v]);
@@ -212,6 +257,7 @@ class ObjReader {
     const StopSignal stop_;
     std::vector<dvec3> positions_, normals_;
     std::vector<dvec2> uvs_;
+    std::vector<UnusableRow> unusable_uvs_, unusable_normals_;
     LargestIndex largest_vertex_, largest_uv_, largest_normal_;
     bool has_smoothing_groups_ = false;
     std::string name_, material_;  // of the faces that follow
