@@ -50,6 +50,22 @@ TEST_F(SolidNames, AreThoseOfTheFile) {
     EXPECT_EQ(names(mesh("m") + "," + mesh("")), "m/left m/right object1/left object1/right ");
 }
 
+TEST_F(SolidNames, OfEqualPartsAreNumbered) {
+    const auto put = [&](const std::string& faces) {
+        put_bytes(file("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 0 0\nv 9 9 0\nv 9 9 9\n" + faces);
+    };
+    put("usemtl left\nf 1 2 3\nusemtl right\nf 2 4 3\nusemtl left\nf 4 5 3\nusemtl right\nf 3 5 6\nusemtl left\nf 1 2 "
+        "6\n");
+    EXPECT_EQ(names(mesh("m")), "m/left m/right m/left.2 m/right.2 m/left.3 ");
+    EXPECT_EQ(materials(mesh("m")), "left /World/red m/left right m/left right m/left ");
+    put("usemtl left\nf 1 2 3\nusemtl left.2\nf 2 4 3\nusemtl left\nf 4 5 3\n");
+    EXPECT_EQ(names(mesh("m")), "m/left m/left.2 m/left.3 ") << "another part has that name";
+    put("g a\nusemtl left\nf 1 2 3\ng b\nf 2 4 3\ng a\nf 4 5 3\n");
+    EXPECT_EQ(names(mesh("m")), "m/a m/b m/a.2 ");
+    put("usemtl left\nf 1 3 2\nusemtl right\nf 4 5 6\nusemtl left\nf 1 2 6\nf 2 3 6\nf 3 1 6\n");
+    EXPECT_EQ(names(mesh("m")), "m/left m/right ") << "parts that close one another are one";
+}
+
 TEST_F(SolidNames, AreOfOneSolidEach) {
     EXPECT_ERROR(
         gather_scene(scene(cube("object1") + "," + cube(""))), ExitCode::usage,

@@ -82,6 +82,19 @@ void make_name_own(MaterialDescription& material, const ObjectDescription& objec
         material.name = given_name(object.name, object.place) + "/" + material.name;
 }
 
+/// Gives each part of a mesh a name of its own: one that an earlier part has gets a number, as "wood.2".
+void number_equal_names(std::vector<MeshGroup>& groups) {
+    std::map<std::string, uint32_t> numbers;  // the last of each name
+    for (const MeshGroup& group : groups) numbers[group.part.name];
+    for (MeshGroup& group : groups) {
+        std::string& name = group.part.name;
+        uint32_t& number = numbers.at(name);
+        if (number++ == 0) continue;
+        const std::string first = name;
+        while (!numbers.try_emplace(name = first + "." + std::to_string(number), 1).second) ++number;
+    }
+}
+
 void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshObject& mesh, const MeshData& data,
               MaterialNames& names) {
     const SceneDescription& scene = *source.description;
@@ -90,6 +103,7 @@ void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshOb
         source.warnings.push_back(scene_error(scene, object.place, warning).what());
     std::vector<MeshGroup> groups = join_groups(placed_parts(data, mesh), object.material >= 0, source.stop);
     if (groups.empty()) throw scene_error(scene, object.place, "there are no triangles", "give at least one");
+    number_equal_names(groups);
     for (auto& [part, pieces] : groups) {
         SourceSolid solid;
         solid.name = groups.size() == 1 ? object.name : given_name(object.name, object.place) + "/" + part.name;
