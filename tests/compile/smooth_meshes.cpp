@@ -117,6 +117,79 @@ TEST(SmoothMeshes, TakeTheFacesOwnNormalsForThoseOfNoUse) {
     expect_error([&] { compiled(mesh); }, ExitCode::usage, "41 normals for 42 vertices");
 }
 
+/// A sheet of four by four bent squares, with normals that look up, wound as they look.
+TrianglesObject sheet() {
+    TrianglesObject mesh;
+    for (int i = 0; i < 25; ++i) {
+        const double x = i % 5, y = int(i / 5);
+        mesh.vertices.push_back({x, y, 0.05 * (x * x - y * y)});
+        mesh.normals.push_back({-0.1 * x, 0.1 * y, 1});
+    }
+    for (uint32_t i = 0; i < 20; ++i) {
+        if (i % 5 == 4) continue;
+        mesh.triangles.push_back({i, i + 1, i + 6});
+        mesh.triangles.push_back({i, i + 6, i + 5});
+    }
+    return mesh;
+}
+void turn(TrianglesObject& mesh, size_t first, size_t end) {
+    for (size_t t = first; t < end; ++t) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+}
+
+TEST(SmoothMeshes, ThatAreOpenAreWoundAsTheirNormalsLook) {
+    const auto right = compiled(sheet());
+    EXPECT_TRUE(right->warnings.empty());
+    TrianglesObject mesh = sheet();
+    turn(mesh, 0, 32);
+    const auto turned = compiled(mesh);
+    EXPECT_EQ(turned->hashes.of(0), right->hashes.of(0));
+    EXPECT_EQ(turned->warnings, std::vector<std::string>{"/objects/0: object 0: turned 32 triangles that were wound "
+                                                         "against the normals of the corners"});
+    mesh.normals[0] = dvec3(0);
+    mesh.normals[1] = {NAN, 0, 0};
+    mesh.normals[24] = {1, 0, 0.35};
+    const auto some = compiled(mesh);
+    ASSERT_EQ(some->warnings.size(), 2u) << "those of no use do not count";
+    EXPECT_EQ(some->warnings[0], turned->warnings[0]);
+
+    mesh = sheet();
+    turn(mesh, 16, 32);
+    const auto half = compiled(mesh);
+    EXPECT_EQ(half->hashes.of(0), right->hashes.of(0)) << "what is wound alike is turned by itself";
+    ASSERT_EQ(half->warnings.size(), 1u);
+    EXPECT_NE(half->warnings[0].find("turned 16 triangles"), std::string::npos);
+
+    mesh = sheet();
+    turn(mesh, 0, 32);
+    mesh.smooth = 0;
+    EXPECT_TRUE(compiled(mesh)->warnings.empty()) << "normals that are not used turn nothing";
+}
+
+TEST(SmoothMeshes, ThatAreOpenAreNotTurnedWhereNormalsDisagree) {
+    TrianglesObject mesh = sheet();
+    for (size_t i = 0; i < 10; ++i) mesh.normals[i] = -mesh.normals[i];
+    const auto mixed = compiled(mesh);
+    ASSERT_EQ(mixed->warnings.size(), 1u);
+    EXPECT_NE(mixed->warnings[0].find("of 96 corners"), std::string::npos);
+    for (dvec3& n : mesh.normals) n = -n;
+    expect_error([&] { compiled(mesh); }, ExitCode::usage, "of 96 corners of triangles the normals are missing");
+}
+
+TEST(SmoothMeshes, ThatAreOpenAreTurnedOnceDoublesAreGone) {
+    TrianglesObject mesh = sheet();
+    turn(mesh, 0, 32);
+    const std::vector<std::array<uint32_t, 3>> once = mesh.triangles;
+    for (auto t : once) {
+        std::swap(t[1], t[2]);
+        mesh.triangles.push_back(t);
+    }
+    const auto doubled = compiled(mesh);
+    ASSERT_EQ(doubled->warnings.size(), 2u);
+    EXPECT_NE(doubled->warnings[0].find("merged 32 faces"), std::string::npos);
+    EXPECT_NE(doubled->warnings[1].find("turned 32 triangles"), std::string::npos);
+    EXPECT_EQ(doubled->hashes.of(0), compiled(sheet())->hashes.of(0));
+}
+
 TEST(SmoothMeshes, OfFlatFacesAreFlat) {
     TrianglesObject mesh = cube();
     std::vector<dvec3> vertices;

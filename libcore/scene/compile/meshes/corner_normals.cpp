@@ -28,6 +28,13 @@ double angle_between(const dvec3& a, const dvec3& b) {
     return elementary::atan2(length(cross(a, b)), dot(a, b));
 }
 
+/// Whether the edge of a half-edge has exactly two triangles, wound alike.
+bool are_wound_alike(const MeshSource& mesh, const MeshEdges& edges, uint32_t h) {
+    const auto place = [&](uint32_t half_edge) { return mesh.vertices[mesh.triangles[half_edge / 3][half_edge % 3]]; };
+    const uint32_t other = edges.next[h];
+    return other != h && edges.next[other] == h && place(other) != place(h);
+}
+
 /// Those of the mesh's vertices. Where a triangle was turned, they are turned, too, if they looked as it did.
 std::vector<CornerNormals> given_normals(const MeshSource& mesh, const std::vector<uint8_t>& turned) {
     std::vector<CornerNormals> normals(mesh.triangles.size());
@@ -53,8 +60,9 @@ std::vector<CornerNormals> normals_by_angle(const MeshSource& mesh, const MeshEd
     UnionFind runs(count);
     for (uint32_t h = 0; h < count; ++h) {
         const uint32_t other = edges.next[h];
-        const bool are_two = other > h && edges.next[other] == h && place(other) != place(h);  // wound alike
-        if (!are_two || !(angle_between(face_normal(mesh, h / 3), face_normal(mesh, other / 3)) < most)) continue;
+        if (other < h || !are_wound_alike(mesh, edges, h) ||
+            !(angle_between(face_normal(mesh, h / 3), face_normal(mesh, other / 3)) < most))
+            continue;
         runs.merge(h, after(other));
         runs.merge(after(h), other);
     }
@@ -103,6 +111,28 @@ bool is_in_parts(const MeshEdges& edges) {
 }
 
 }  // namespace
+
+void turn_to_normals(const MeshSource& mesh, MeshPieces& pieces) {
+    MeshSource kept;
+    kept.vertices = mesh.vertices;
+    for (const uint32_t t : pieces.source) kept.owned_triangles.push_back(mesh.triangles[t]);
+    kept.triangles = kept.owned_triangles;
+    const auto count = static_cast<uint32_t>(kept.triangles.size());
+    const MeshEdges edges = link_edges(kept);
+    UnionFind runs(count);
+    for (uint32_t h = 0; h < 3 * count; ++h)
+        if (are_wound_alike(kept, edges, h)) runs.merge(h / 3, edges.next[h] / 3);
+    enum : uint8_t { agrees = 1, opposes = 2 };
+    std::vector<uint8_t> found(count, 0);  // of each run, at its root
+    for (uint32_t t = 0; t < count; ++t)
+        for (const uint32_t corner : kept.triangles[t]) {
+            const double cosine = dot(normalized(mesh.normals[corner]), face_normal(kept, t));
+            if (cosine >= least_cosine) found[runs.root(t)] |= agrees;
+            if (cosine <= -least_cosine) found[runs.root(t)] |= opposes;
+        }
+    pieces.turned.resize(count);
+    for (uint32_t t = 0; t < count; ++t) pieces.faults.opposed += pieces.turned[t] = found[runs.root(t)] == opposes;
+}
 
 void find_corner_normals(SceneSource& source, std::span<SourceSolid> solids,
                          const std::vector<std::vector<uint8_t>>& turned) {

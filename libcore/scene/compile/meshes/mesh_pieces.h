@@ -20,6 +20,7 @@ struct MeshFaults {
     uint32_t doubled = 0;      // triangles left out: an earlier one, or an earlier pair, has the same corners
     uint32_t flat_pieces = 0;  // left out: they are closed, but have no volume
     uint32_t turned = 0;       // triangles that were wound unlike most of their piece
+    uint32_t opposed = 0;      // triangles of a sheet that were wound against their normals, and are turned
     uint32_t passing = 0;      // pieces that pass through others, so that neither contains the other
     // that keep it from being closed: of one triangle, of more than two
     uint32_t open_edges = 0;
@@ -36,7 +37,7 @@ struct MeshFaults {
 struct MeshPieces {
     bool closed = false;           // the triangles surround a volume; else they are a sheet
     std::vector<uint32_t> source;  // their numbers in the mesh, ascending
-    std::vector<uint8_t> turned;   // of a closed mesh, for each whether it is wound the other way than in the mesh
+    std::vector<uint8_t> turned;   // for each whether it is wound the other way than in the mesh; empty: none is
     /// The solid that each belongs to, from 0, in the order of their first triangles. Bodies that come near no other
     /// are one solid.
     std::vector<uint32_t> solid;

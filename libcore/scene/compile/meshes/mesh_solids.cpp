@@ -143,6 +143,9 @@ void warn(SceneSource& source, const SourceSolid& solid, const MeshPieces& piece
     if (faults.turned > 0)
         add("turned " + counted(faults.turned, " triangle that was", " triangles that were") +
             " wound unlike the others of the surface");
+    if (faults.opposed > 0)
+        add("turned " + counted(faults.opposed, " triangle that was", " triangles that were") +
+            " wound against the normals of the corners");
     if (faults.passing > 0)
         add(counted(faults.passing, " piece passes", " pieces pass") +
             " through others of the mesh, and makes no hole in them");
@@ -192,6 +195,7 @@ std::vector<MeshGroup> join_groups(std::vector<MeshPart> parts, bool one_materia
 }
 
 void add_mesh_solids(SceneSource& source, SourceSolid solid, MeshPieces pieces) {
+    if (!pieces.closed && !solid.smooth && !solid.mesh.normals.empty()) turn_to_normals(solid.mesh, pieces);
     warn(source, solid, pieces);
     solid.closed = pieces.closed;
     const bool all_kept = pieces.source.size() == solid.mesh.triangles.size();
@@ -203,10 +207,10 @@ void add_mesh_solids(SceneSource& source, SourceSolid solid, MeshPieces pieces) 
     if (count > 1 || !all_kept || any_turned)
         for (size_t t = 0; t < pieces.source.size(); ++t) {
             TriangleCorners corners = solid.mesh.triangles[pieces.source[t]];
-            const bool is_turned = pieces.closed && pieces.turned[t] != 0;
+            const bool is_turned = !pieces.turned.empty() && pieces.turned[t] != 0;
             if (is_turned) std::swap(corners[1], corners[2]);
             triangles[pieces.closed ? pieces.solid[t] : 0].push_back(corners);
-            turned[pieces.closed ? pieces.solid[t] : 0].push_back(is_turned);
+            if (pieces.closed) turned[pieces.solid[t]].push_back(is_turned);
         }
     for (uint32_t body = 0; count > 1 && body < count; ++body) {
         SourceSolid& own = source.solids.emplace_back(solid.with_mesh(part_of(solid.mesh, triangles[body])));
