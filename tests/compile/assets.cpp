@@ -110,6 +110,48 @@ TEST_F(Assets, AFileIsReadOnceHoweverManyNameIt) {
     EXPECT_EQ(compile_scene<float>(scene)->hashes.of(0), compiled->hashes.of(0));
 }
 
+/// The texture coordinates of a square's triangles, moved by `away` before they are compiled.
+std::vector<Vec2<double>> compiled_uvs(const TextureDescription& texture, const glm::dvec2& away, std::string& hash) {
+    SceneDescription scene = samples::empty_scene();
+    TrianglesObject square = samples::square();
+    for (glm::dvec2& uv : square.uvs) uv = 0.75 * uv + glm::dvec2(0.125) + away;
+    samples::add_object(scene, std::move(square));
+    scene.textures = {texture};
+    scene.materials[0].texture = 0;
+    const auto compiled = compile_scene<double>(scene);
+    hash = compiled->hashes.of(0);
+    return compiled->uvs;
+}
+
+TEST_F(Assets, TextureCoordinatesFarFromZeroLoseWholeRepeats) {
+    TextureDescription texture;
+    texture.repeat = {3, 0.5};
+    std::string hash, other;
+    const std::vector<Vec2<double>> near = compiled_uvs(texture, {0, 0}, hash);
+    EXPECT_EQ(near[0].x, 0.125) << "what is near stays what it is";
+    for (const auto& [wrap, away] : {std::pair(TextureWrap::repeat, glm::dvec2(10000, -20000)),
+                                     std::pair(TextureWrap::repeat, glm::dvec2(-1.0 / 3, 2)),
+                                     std::pair(TextureWrap::mirror, glm::dvec2(-2.0 / 3, 4)),
+                                     std::pair(TextureWrap::mirror, glm::dvec2(10000, 900000))}) {
+        texture.wrap = {wrap, wrap};
+        const std::vector<Vec2<double>> far = compiled_uvs(texture, away, other);
+        ASSERT_EQ(far.size(), near.size());
+        for (size_t i = 0; i < far.size(); ++i) {
+            EXPECT_NEAR(far[i].x, near[i].x, 1e-9);
+            EXPECT_NEAR(far[i].y, near[i].y, 1e-9);
+        }
+        EXPECT_NE(other, hash);
+    }
+    const std::vector<Vec2<double>> odd = compiled_uvs(texture, {1 + 1000, 2 - 1000}, other);
+    EXPECT_NEAR(odd[0].x, 0.125 + 1.0 / 3, 1e-9) << "3003 repeats are odd, mirrored ones alternate";
+    EXPECT_NEAR(odd[0].y, 2.125, 1e-9) << "as are -499";
+    texture.wrap = {TextureWrap::clamp, TextureWrap::repeat};
+    EXPECT_EQ(compiled_uvs(texture, {100, 0}, other)[0].x, 100.125) << "beyond its edges a clamped picture goes on";
+    texture.wrap = {};
+    texture.repeat = {1e6, 1};
+    for (const Vec2<double>& uv : compiled_uvs(texture, {1e300, 5}, other)) EXPECT_EQ(uv.x, 1e300);
+}
+
 TEST_F(Assets, WrongArraysNameThePlace) {
     const auto mesh_refused = [&](const auto& change, const std::string& text) {
         MeshData data = arrays();

@@ -40,6 +40,7 @@
 namespace cistula {
 namespace {
 
+using glm::dvec2;
 using glm::dvec3;
 
 /// Returns memory to the system that the allocator keeps after the tree build of a large mesh, before the largest
@@ -317,6 +318,37 @@ class Compiler {
         }
     }
 
+    /// The whole parts that a triangle's u and v lose where they lie far from 0, in units of uv times repeat: those of
+    /// its least corner, so that float keeps the digits that tell texels apart. Even for a mirrored picture.
+    std::array<double, 2> lost_parts(const SourceSolid& from, const TriangleCorners& corners) const {
+        std::array<double, 2> parts{};
+        const int number = source_.materials[from.material].texture;
+        if (number < 0) return parts;
+        const TextureDescription& texture = description_.textures[static_cast<size_t>(number)];
+        for (int axis = 0; axis < 2; ++axis) {
+            const TextureWrap wrap = texture.wrap[static_cast<size_t>(axis)];
+            if (wrap == TextureWrap::clamp) continue;
+            double least = INFINITY;
+            for (const uint32_t corner : corners)
+                least = min_or_second(from.mesh.uvs[corner][axis] * texture.repeat[axis], least);
+            const double period = wrap == TextureWrap::mirror ? 2 : 1;
+            const double part = period * floor_of(least / period);
+            if (magnitude(part) < 0x1p52) parts[static_cast<size_t>(axis)] = part;  // beyond, no digits are left
+        }
+        return parts;
+    }
+
+    /// The texture coordinates of a corner of a triangle that loses these parts.
+    dvec2 near_uv(const SourceSolid& from, uint32_t corner, const std::array<double, 2>& parts) const {
+        dvec2 uv = from.mesh.uvs[corner];
+        const dvec2 repeat =
+            description_.textures[static_cast<size_t>(source_.materials[from.material].texture)].repeat;
+        for (int axis = 0; axis < 2; ++axis)
+            if (const double part = parts[static_cast<size_t>(axis)]; part != 0)
+                uv[axis] = fused(uv[axis], repeat[axis], -part) / repeat[axis];
+        return uv;
+    }
+
     void compile_mesh(uint32_t number, PreparedMesh prepared) {
         SourceSolid& from = source_.solids[number];
         const NormalizedMesh mesh = placed_mesh(number);
@@ -337,11 +369,13 @@ class Compiler {
         places_.boxes[number] = prepared.box;
         const bool textured = source_.materials[from.material].texture >= 0;
         const bool outlined = mesh.size() <= most_outlined;
-        for (uint32_t t = 0; t < mesh.size() && (textured || outlined); ++t)
+        for (uint32_t t = 0; t < mesh.size() && (textured || outlined); ++t) {
+            const std::array<double, 2> parts = lost_parts(from, mesh.corners(t));
             for (const uint32_t corner : mesh.corners(t)) {
                 if (outlined) scene_.hulls[number].points.push_back(mesh.vertex(corner));
-                if (textured) scene_.uvs.push_back(Vec2<Real>(from.mesh.uvs[corner]));
+                if (textured) scene_.uvs.push_back(Vec2<Real>(near_uv(from, corner, parts)));
             }
+        }
         if (!from.normals.empty()) add_normals(number, mesh);
         triangle_count_ += mesh.size();
         from.mesh = {};  // its triangles are now stored in the clusters
@@ -432,6 +466,9 @@ class Compiler {
             for (const dvec3& normal : corners) hash_.add(normal);
         if (source_.materials[source_.solids[number].material].texture < 0) return;
         for (const auto& uv : mesh.uvs) hash_.add(uv.x), hash_.add(uv.y);
+        for (const TriangleCorners& corners : mesh.triangles)  // with the hash of before for all that lose none
+            for (const double part : lost_parts(source_.solids[number], corners))
+                if (part != 0) hash_.add(part);
     }
 
     void compile_shading() {
