@@ -152,6 +152,22 @@ TEST_F(Assets, TextureCoordinatesFarFromZeroLoseWholeRepeats) {
     for (const Vec2<double>& uv : compiled_uvs(texture, {1e300, 5}, other)) EXPECT_EQ(uv.x, 1e300);
 }
 
+TEST_F(Assets, ASkyIsTwiceAsWideAsHigh) {
+    SceneDescription scene = samples::empty_scene();
+    samples::add_object(scene, samples::square());
+    scene.sky.emplace().texture = 0;
+    for (const uint32_t width : {1u, 2u, 3u, 4u, 5u, 8u}) {
+        scene.textures = {{}};
+        scene.textures[0].texels = shared(TexelArray{width, 2, 1, std::vector<float>(2 * width, 1)});
+        if (width == 4)
+            EXPECT_EQ(compile_scene<float>(scene)->textures.size(), 1u);
+        else
+            expect_error([&] { compile_scene<float>(scene); }, ExitCode::file,
+                         "test.json: /background: the texels: the sky is " + std::to_string(width) +
+                             "x2; give a picture of all directions, twice as wide as high");
+    }
+}
+
 TEST_F(Assets, WrongArraysNameThePlace) {
     const auto mesh_refused = [&](const auto& change, const std::string& text) {
         MeshData data = arrays();

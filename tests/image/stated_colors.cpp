@@ -1,6 +1,8 @@
 // What the headers of PNG and Radiance pictures say of their colors.
 #include "image/color/stated_colors.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "testing/support/byte_order.h"
@@ -174,6 +176,21 @@ TEST_F(StatedColors, Radiance) {
     EXPECT_EQ(file_encoding("", colors, true).space.id, "lin_rec2020_scene");
     EXPECT_EQ(file_encoding("", colors, true).curve(0.5), 0.5);
     EXPECT_EQ(of("PRIMARIES= .708 .292 .17")->profile, "PRIMARIES= .708 .292 .17");
+}
+
+TEST_F(StatedColors, RadianceIsDividedByAllItsFactors) {
+    using Factors = std::array<double, 3>;
+    const auto of = [&](const std::string& lines) {
+        return stated("#?RADIANCE\n" + lines + "\nFORMAT=32-bit_rle_rgbe\n\nEXPOSURE=9\n")->factors;
+    };
+    EXPECT_EQ(of("EXPOSURE= 2.5e-01"), (Factors{0.25, 0.25, 0.25}));
+    EXPECT_EQ(of("EXPOSURE=2\nSOFTWARE=EXPOSURE=7\n\tEXPOSURE=7\nEXPOSURE=0.125"), (Factors{0.25, 0.25, 0.25}));
+    EXPECT_EQ(of("COLORCORR= 1 2 4\nEXPOSURE=2\nCOLORCORR=2 1 0.5"), (Factors{4, 4, 4}));
+    EXPECT_EQ(of("COLORCORR= 1 2 4"), (Factors{1, 2, 4}));
+    EXPECT_EQ(of("PRIMARIES= .64 .33 .3 .6 .15 .06 .3127 .329\nEXPOSURE=3"), (Factors{3, 3, 3}));
+    EXPECT_EQ(of("PRIMARIES= .64\n" + std::string(70000, '#') + "\nEXPOSURE=3"), (Factors{3, 3, 3}));
+    for (const char* line : {"EXPOSURE=", "EXPOSURE=x", "EXPOSURE=1e999", "COLORCORR= 1 2"})
+        EXPECT_TRUE(std::isnan(of(line)[2])) << line;
 }
 
 TEST_F(StatedColors, OtherAndDamagedFiles) {

@@ -1,6 +1,7 @@
 // What a picture file says of its colors, and what that makes of its numbers.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,8 +16,9 @@ struct FileColors {
     std::string id;       // colorInteropID, or a name of color_encodings; empty: none
     std::string profile;  // name of an ICC profile, or of something else, that is none of them; empty: none
     std::optional<Chromaticities> chromaticities;
-    bool is_aces = false;  // acesImageContainerFlag, of SMPTE ST 2065-4
-    bool is_half = false;  // numbers are rounded to halves
+    bool is_aces = false;                    // acesImageContainerFlag, of SMPTE ST 2065-4
+    bool is_half = false;                    // numbers are rounded to halves
+    std::array<double, 3> factors{1, 1, 1};  // that its numbers were multiplied by, and are to be divided by
 };
 
 /// What the numbers of one file mean.

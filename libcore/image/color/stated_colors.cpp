@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <locale>
@@ -103,24 +104,41 @@ std::optional<FileColors> colors_of_png(std::istream& file) {
     return with_primaries(std::move(colors), chromaticities);
 }
 
+/// Whether a file is a Radiance picture that does not begin as such, which is read all the same.
+bool names_radiance(std::istream& file) {
+    std::string start(1 << 16, '\0');
+    file.read(start.data(), static_cast<std::streamsize>(start.size()));
+    const std::string header = start.substr(0, start.find("\n\n"));
+    return header.starts_with("FORMAT=32-bit_rle_") || header.find("\nFORMAT=32-bit_rle_") != std::string::npos;
+}
+
 /// Lines up to an empty one.
 std::optional<FileColors> colors_of_radiance(std::istream& file) {
-    std::string start(1 << 16, '\0');
+    std::string start(1 << 20, '\0');
     file.read(start.data(), static_cast<std::streamsize>(start.size()));
     start.resize(static_cast<size_t>(file.gcount()));
     std::istringstream lines(start);
     std::optional<FileColors> colors;
+    const auto stated = [&]() -> FileColors& { return colors ? *colors : colors.emplace(); };
     for (std::string line; std::getline(lines, line) && !line.empty();) {
-        if (line.starts_with("FORMAT=") && line.find("xyze") != std::string::npos) return unknown_colors(line);
-        constexpr std::string_view primaries = "PRIMARIES=";
-        if (!line.starts_with(primaries)) continue;
-        std::istringstream numbers(line.substr(primaries.size()));
+        std::istringstream numbers(line.substr(line.find('=') + 1));
         numbers.imbue(std::locale::classic());
-        Chromaticities chromaticities;
-        for (float& number : chromaticities) numbers >> number;
-        if (!numbers) return unknown_colors(line);
-        colors = FileColors();
-        colors->chromaticities = chromaticities;
+        if (line.starts_with("FORMAT=") && line.find("xyze") != std::string::npos) stated().profile = line;
+        if (line.starts_with("PRIMARIES=")) {
+            Chromaticities chromaticities;
+            for (float& number : chromaticities) numbers >> number;
+            if (numbers)
+                stated().chromaticities = chromaticities;
+            else
+                stated().profile = line;
+        }
+        const bool is_of_all = line.starts_with("EXPOSURE=");
+        if (!is_of_all && !line.starts_with("COLORCORR=")) continue;
+        double factor = 1;
+        for (int c = 0; c < 3; ++c) {
+            if ((c == 0 || !is_of_all) && !(numbers >> factor)) factor = NAN;
+            stated().factors[static_cast<size_t>(c)] *= factor;
+        }
     }
     return colors;
 }
@@ -132,10 +150,12 @@ std::optional<FileColors> stated_colors(const std::string& path) {
     std::string start(8, '\0');
     file.read(start.data(), 8);
     if (start == "\x89PNG\r\n\x1a\n") return colors_of_png(file);
-    if (!start.starts_with("#?")) return header_colors(file);
     file.clear();
     file.seekg(0);
-    return colors_of_radiance(file);
+    const bool is_radiance = start.starts_with("#?") || names_radiance(file);
+    file.clear();
+    file.seekg(0);
+    return is_radiance ? colors_of_radiance(file) : header_colors(file);
 }
 
 FileColors colors_of_gamma(double gamma) {

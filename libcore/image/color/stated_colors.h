@@ -12,7 +12,8 @@ namespace cistula {
 
 /// The encoding that a picture's header states; none: it states nothing that comes before an ICC profile or a default.
 /// PNG (third edition, 11.3.2): cICP; without it and a profile, sRGB; without that, gAMA and cHRM. Radiance: PRIMARIES,
-/// and a FORMAT of XYZ. Others: header_colors. What is no encoding known here is a `profile`, by which it is refused.
+/// and a FORMAT of XYZ; the products of all EXPOSURE and COLORCORR, NaN where one is no number. Others: header_colors.
+/// What is no encoding known here is a `profile`, by which it is refused.
 std::optional<FileColors> stated_colors(const std::string& path);
 
 /// What a gamma says, where light is number ^ gamma: as `id` linear, 1.8 or 2.4; nothing for 2.2, by which programs

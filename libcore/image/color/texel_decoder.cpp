@@ -6,8 +6,9 @@
 
 namespace cistula {
 
-TexelDecoder::TexelDecoder(const FileEncoding& encoding, uint32_t sample_bytes, bool is_half)
-    : curve_(encoding.curve), sample_bytes_(sample_bytes), rounding_(is_half ? 0x1p-11 : 0x1p-24) {
+TexelDecoder::TexelDecoder(const FileEncoding& encoding, uint32_t sample_bytes, bool is_half,
+                           const std::array<double, 3>& factors)
+    : curve_(encoding.curve), sample_bytes_(sample_bytes), factors_(factors), rounding_(is_half ? 0x1p-11 : 0x1p-24) {
     const ColorSpace& own = color_spaces().front();
     converts_ = encoding.space.id != own.id;
     if (converts_) matrix_ = color_matrix(encoding.space, own);
@@ -34,24 +35,26 @@ glm::vec3 TexelDecoder::texel(const glm::dvec3& light) const {
 template <class Sample, class Light>
 void TexelDecoder::append_as(std::string_view bytes, uint32_t channels, std::vector<glm::vec3>& texels,
                              Light light) const {
-    const auto sample = [&](size_t at) {
+    const auto sample = [&](size_t at, size_t channel) {
+        at += channel;
         Sample value;
         std::memcpy(&value, bytes.data() + at * sizeof value, sizeof value);
-        return light(value);
+        return light(value, channel);
     };
     for (size_t at = 0; at + channels <= bytes.size() / sizeof(Sample); at += channels)
-        texels.push_back(channels < 3 ? glm::vec3(glm::dvec3(sample(at)))
-                                      : texel({sample(at), sample(at + 1), sample(at + 2)}));
+        texels.push_back(channels < 3 ? glm::vec3(glm::dvec3(sample(at, 0)))
+                                      : texel({sample(at, 0), sample(at, 1), sample(at, 2)}));
 }
 
 void TexelDecoder::append(std::string_view bytes, uint32_t channels, std::vector<glm::vec3>& texels) const {
-    const auto coded = [&](auto code) { return table_[code]; };
+    const auto coded = [&](auto code, size_t) { return table_[code]; };
     if (sample_bytes_ == 1)
         append_as<uint8_t>(bytes, channels, texels, coded);
     else if (sample_bytes_ == 2)
         append_as<uint16_t>(bytes, channels, texels, coded);
     else
-        append_as<float>(bytes, channels, texels, [&](float number) { return curve_(static_cast<double>(number)); });
+        append_as<float>(bytes, channels, texels,
+                         [&](float number, size_t c) { return curve_(static_cast<double>(number) / factors_[c]); });
 }
 
 }  // namespace cistula

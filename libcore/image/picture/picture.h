@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -23,7 +24,8 @@ struct ColorPicture {
     uint32_t width = 0;
     uint32_t height = 0;
     std::vector<glm::vec3> texels;
-    std::vector<float> alpha = {};  // of texels that are not premultiplied; empty: all are opaque
+    std::vector<float> alpha = {};                 // of texels that are not premultiplied; empty: all are opaque
+    std::array<double, 3> divided_by = {1, 1, 1};  // factors that its file's header said its numbers had
 };
 
 /// A fraction, as EXR headers give frame rates.

@@ -100,6 +100,7 @@ void Answer::colors(const FileColors& colors) const {
     ReplyColors reply = {};
     if (colors.chromaticities)
         std::copy(colors.chromaticities->begin(), colors.chromaticities->end(), reply.chromaticities);
+    std::copy(colors.factors.begin(), colors.factors.end(), reply.factors);
     reply.has_chromaticities = colors.chromaticities.has_value();
     reply.is_aces = colors.is_aces;
     reply.is_half = colors.is_half;

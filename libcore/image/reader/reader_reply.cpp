@@ -63,6 +63,7 @@ FileColors colors_of(std::string_view bytes) {
     FileColors colors;
     (reply.names_profile != 0 ? colors.profile : colors.id) = bytes;
     if (reply.has_chromaticities != 0) colors.chromaticities = std::to_array(reply.chromaticities);
+    colors.factors = std::to_array(reply.factors);
     colors.is_aces = reply.is_aces != 0;
     colors.is_half = reply.is_half != 0;
     return colors;
@@ -217,8 +218,13 @@ ColorPicture receive_texture(ReaderReply& reply, std::string_view encoding) {
     const StoredPicture& sent = start.picture;
     const uint32_t sample = facts_of(sent.channels[0].type).sample_bytes;
     const TexelDecoder decoder(file_encoding(encoding, start.colors, sample == sizeof(float)), sample,
-                               start.colors.is_half);
+                               start.colors.is_half, start.colors.factors);
+    for (const double factor : start.colors.factors)
+        if (!(is_finite(factor) && factor > 0))
+            throw PictureRefused(
+                "its header's EXPOSURE or COLORCORR is no number above 0, by which its numbers could be divided");
     ColorPicture picture;
+    picture.divided_by = start.colors.factors;
     picture.width = static_cast<uint32_t>(sent.data.width);
     picture.height = static_cast<uint32_t>(sent.data.height);
     picture.texels.reserve(sent.data.pixels());

@@ -9,7 +9,7 @@
 namespace cistula {
 
 /// The program's only argument; it changes whenever this header does.
-inline constexpr const char* reader_protocol = "cistula-pictures-6 " CISTULA_VERSION;
+inline constexpr const char* reader_protocol = "cistula-pictures-7 " CISTULA_VERSION;
 
 inline constexpr int reader_socket = 3;           // the program's descriptor of its end
 inline constexpr int reader_wrong_protocol = 64;  // the program's exit code for another argument
@@ -65,6 +65,7 @@ struct ReplyColors {
     float chromaticities[8];
     uint32_t has_chromaticities, is_aces, is_half;
     uint32_t names_profile;  // 1: the text is FileColors::profile; 0: FileColors::id
+    double factors[3] = {1, 1, 1};
 };
 inline constexpr uint32_t largest_reply_id = 255;
 

@@ -5,6 +5,8 @@
 #include <span>
 #include <tuple>
 
+#include <fmt/format.h>
+
 #include "base/default_rounding.h"
 #include "cistula/numerics/vec.h"
 #include "image/reader/picture_reader.h"
@@ -90,6 +92,7 @@ class AssetLoader {
             if (object.material >= 0 && object.material < static_cast<int>(scene_.materials.size()))
                 load_texture(scene_.materials[static_cast<size_t>(object.material)].texture);
         if (scene_.sky) load_texture(scene_.sky->texture);
+        if (scene_.sky) check_sky(scene_.sky->texture);
         return std::move(assets_);
     }
 
@@ -133,6 +136,19 @@ class AssetLoader {
         assets_.pictures[index] = at_place(scene_, place, [&] { return picture_of(texture, place); });
     }
 
+    /// Throws unless a sky's picture has the shape of all directions.
+    void check_sky(int number) const {
+        if (number < 0 || number >= static_cast<int>(scene_.textures.size())) return;
+        const auto index = static_cast<size_t>(number);
+        const ColorPicture& picture = *assets_.pictures[index];
+        if (picture.width == 2 * picture.height) return;
+        const std::string& file = scene_.textures[index].file;
+        throw Error(ErrorKind::file, fmt::format("the sky is {}x{}", picture.width, picture.height),
+                    "give a picture of all directions, twice as wide as high")
+            .at(file.empty() ? "the texels" : file)
+            .at(place_in(scene_, "/background"));
+    }
+
     std::shared_ptr<const ColorPicture> picture_of(const TextureDescription& texture, const std::string& place) {
         if (!is_finite(texture.repeat.x) || !is_finite(texture.repeat.y))
             throw Error(ErrorKind::scene, "the repeat must be finite");
@@ -146,10 +162,15 @@ class AssetLoader {
         read = std::make_shared<const ColorPicture>(texture.texels
                                                         ? reader_.decode(*texture.texels, clamped, texture.colorspace)
                                                         : reader_.read(texture.file, clamped, texture.colorspace));
-        if (found.count() > 0) {
-            const std::string name = texture.texels ? "" : texture.file + ": ";
-            assets_.warnings.push_back(scene_error(scene_, place, name + found.warning()).what());
-        }
+        const std::string name = texture.texels ? "" : texture.file + ": ";
+        if (found.count() > 0) assets_.warnings.push_back(scene_error(scene_, place, name + found.warning()).what());
+        if (const auto& [r, g, b] = read->divided_by; r != 1 || g != 1 || b != 1)
+            assets_.warnings.push_back(
+                scene_error(scene_, place,
+                            name + fmt::format("its header says that its numbers were multiplied (EXPOSURE, "
+                                               "COLORCORR): they are divided by {:.9g}{}",
+                                               r, r == g && g == b ? "" : fmt::format(", {:.9g}, {:.9g}", g, b)))
+                    .what());
         return read;
     }
 

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "image/reader/picture_reader.h"
+#include "scene/assets/assets.h"
 #include "testing/support/byte_order.h"
 #include "testing/support/scratch_directory.h"
 
@@ -107,6 +108,54 @@ TEST_F(MisreadPictures, RadianceThatDoesNotBeginAtTheTopLeft) {
         EXPECT_EQ(refusal("a.hdr", hdr(resolution)),
                   "its resolution line is '" + std::string(resolution) +
                       "', and it would be read as '-Y HEIGHT +X WIDTH', from the top left; save it so, or as EXR");
+}
+
+class RadianceFactors : public MisreadPictures {
+  protected:
+    /// A picture of two texels, (1, 0.5, 0.25) each, if its numbers had no factors.
+    static std::string hdr(const std::string& lines) {
+        return "#?RADIANCE\n" + lines + "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x40\x20\x81\x80\x40\x20\x81";
+    }
+    glm::vec3 texel(const std::string& lines) {
+        ColorPicture picture;
+        EXPECT_EQ(refusal("a.hdr", hdr(lines), &picture), "");
+        return picture.texels.empty() ? glm::vec3(NAN) : picture.texels.at(0);
+    }
+};
+
+TEST_F(RadianceFactors, AreDividedOut) {
+    const glm::vec3 whole = texel("");
+    EXPECT_GT(whole.x, whole.y);
+    EXPECT_EQ(texel("EXPOSURE=1\n"), whole);
+    EXPECT_EQ(texel("EXPOSURE=0.5\n"), 2.0f * whole);
+    EXPECT_EQ(texel("EXPOSURE=8\nEXPOSURE= 5.000000e-01\n"), 0.25f * whole);
+    EXPECT_EQ(texel("COLORCORR= 1 0.5 0.25\nEXPOSURE=2\n"), glm::vec3(0.5f, 1, 2) * whole);
+    ColorPicture bare;
+    EXPECT_EQ(refusal("a.hdr", hdr("EXPOSURE=0.5\n").substr(std::string("#?RADIANCE\n").size()), &bare), "");
+    EXPECT_EQ(bare.texels.at(0), 2.0f * whole) << "what does not begin as such is read, too";
+    EXPECT_EQ(texel("EXPOSURE=3\n"), glm::vec3(glm::dvec3(whole) / 3.0));
+    for (const char* line : {"EXPOSURE=0\n", "EXPOSURE=-1\n", "EXPOSURE=x\n", "COLORCORR=1 1\n"})
+        EXPECT_EQ(refusal("a.hdr", hdr(line)),
+                  "its header's EXPOSURE or COLORCORR is no number above 0, by which its numbers could be divided");
+}
+
+TEST_F(RadianceFactors, AreSaid) {
+    SceneDescription scene;
+    scene.source = "test.json";
+    for (const char* lines : {"", "EXPOSURE=4\nEXPOSURE=4\n", "COLORCORR=1 2 0.5\n"}) {
+        scene.textures.emplace_back().file = folder_.file(std::to_string(scene.textures.size()) + ".hdr");
+        put_bytes(scene.textures.back().file, hdr(lines));
+    }
+    for (int i = 0; i < 3; ++i) {
+        scene.sky.emplace().texture = i;
+        const SceneAssets assets = load_assets(scene);
+        const std::string start =
+            "test.json: /textures/" + std::to_string(i) + ": " + scene.textures[size_t(i)].file +
+            ": its header says that its numbers were multiplied (EXPOSURE, COLORCORR): they are divided by ";
+        EXPECT_EQ(assets.warnings, i == 0   ? std::vector<std::string>{}
+                                   : i == 1 ? std::vector<std::string>{start + "16"}
+                                            : std::vector<std::string>{start + "1, 2, 0.5"});
+    }
 }
 
 }  // namespace
