@@ -152,6 +152,14 @@ TEST_F(Assets, TextureCoordinatesFarFromZeroLoseWholeRepeats) {
     for (const Vec2<double>& uv : compiled_uvs(texture, {1e300, 5}, other)) EXPECT_EQ(uv.x, 1e300);
 }
 
+TEST_F(Assets, APlaneWithATextureHasNoCoordinatesToLose) {
+    SceneDescription scene = samples::empty_scene();
+    samples::add_object(scene, DiskObject::plane({0, 0, 1}, 0));
+    scene.textures = {{}};
+    scene.materials[0].texture = 0;
+    EXPECT_TRUE(compile_scene<float>(scene)->uvs.empty());
+}
+
 TEST_F(Assets, ASkyIsTwiceAsWideAsHigh) {
     SceneDescription scene = samples::empty_scene();
     samples::add_object(scene, samples::square());

@@ -221,7 +221,7 @@ ColorPicture receive_texture(ReaderReply& reply, std::string_view encoding) {
                                start.colors.is_half, start.colors.factors);
     for (const double factor : start.colors.factors)
         if (!(is_finite(factor) && factor > 0))
-            throw PictureRefused(
+            throw std::runtime_error(
                 "its header's EXPOSURE or COLORCORR is no number above 0, by which its numbers could be divided");
     ColorPicture picture;
     picture.divided_by = start.colors.factors;

@@ -323,7 +323,7 @@ class Compiler {
     std::array<double, 2> lost_parts(const SourceSolid& from, const TriangleCorners& corners) const {
         std::array<double, 2> parts{};
         const int number = source_.materials[from.material].texture;
-        if (number < 0) return parts;
+        if (number < 0 || from.mesh.uvs.empty()) return parts;  // as of a disk
         const TextureDescription& texture = description_.textures[static_cast<size_t>(number)];
         for (int axis = 0; axis < 2; ++axis) {
             const TextureWrap wrap = texture.wrap[static_cast<size_t>(axis)];
