@@ -47,10 +47,13 @@ Scene::Scene(SceneSource source, PrecisionChoice choice)
     : choice_(std::move(choice)), shown_(source.description->shown), names_(name_scene(source)) {
     const std::shared_ptr<const MovingScene> moving = source.description->still ? nullptr : source.moving;
     if (!choice_.warning.empty()) warnings_.push_back(choice_.warning);
-    if (choice_.precision == Precision::double_)
-        compile<double>(std::move(source));
-    else
-        compile<float>(std::move(source));
+    const std::shared_ptr<const SceneDescription> kept = source.own;  // beyond the source
+    named_by_frame(*source.description, [&] {
+        if (choice_.precision == Precision::double_)
+            compile<double>(std::move(source));
+        else
+            compile<float>(std::move(source));
+    });
     if (!moving) return;
     const auto frames = std::make_shared<SceneFrames>(moving, choice_.precision);
     frames->put(*this);

@@ -193,23 +193,28 @@ class MovingRenderer : public Renderer {
         return renderer_->pixel_tree(camera, settings, x, y, limits);
     }
     size_t frames_ahead() const override { return 0; }
-    uint32_t effects() const override { return renderer_->effects(); }
-    int lanes() const override { return renderer_->lanes(); }
-    std::string intersector() const override { return renderer_->intersector(); }
-    RenderTimes times() const override { return renderer_->times(); }
+    uint32_t effects() const override { return asked(&Renderer::effects); }
+    int lanes() const override { return asked(&Renderer::lanes); }
+    std::string intersector() const override { return asked(&Renderer::intersector); }
+    RenderTimes times() const override { return asked(&Renderer::times); }
     std::vector<std::string> notes() const override {
-        std::vector<std::string> all = renderer_->notes();
+        std::vector<std::string> all = asked(&Renderer::notes);
         all.insert(all.end(), notes_.begin(), notes_.end());
         return all;
     }
-    size_t memory() const override { return renderer_->memory(); }
+    size_t memory() const override { return asked(&Renderer::memory); }
 
   private:
+    /// What the last frame's renderer says; where none could be made, nothing.
+    template <class Answer>
+    Answer asked(Answer (Renderer::*question)() const) const {
+        return renderer_ ? (renderer_.get()->*question)() : Answer();
+    }
     void show(int frame, StopSignal stop) {
         if (renderer_ && shown_ == frame) return;
-        renderer_.reset();
         const InStage stage(Stage::compile);
-        const Scene scene = scene_.at(frame, stop);
+        const Scene scene = scene_.at(frame, stop);  // may throw: the renderer of the frame before then stays
+        renderer_.reset();
         notes_.clear();
         for (const std::string& warning : scene.warnings())
             if (std::find(scene_.warnings().begin(), scene_.warnings().end(), warning) == scene_.warnings().end())

@@ -305,10 +305,12 @@ Box box_of_motion(const SceneDescription& description, const SceneAssets& assets
         if (assets.meshes[i]) meshes.emplace(i, *assets.meshes[i]);
     SceneDescription at = description;
     SceneDescription part = description;  // what changes, but for meshes
+    const auto parts = [&] { return gathered_parts(part, {}, stop); };
     Box box;
     for (int frame = motion.frames.front(); frame <= motion.frames.back(); ++frame) {
         stop.check();
         motion.set(at, frame);
+        part.shown = frame;
         part.objects.clear();
         part.lights.clear();
         for (const size_t i : motion.lights) part.lights.push_back(at.lights[i]);
@@ -317,7 +319,7 @@ Box box_of_motion(const SceneDescription& description, const SceneAssets& assets
                 mesh->second.add_to(box, std::get<MeshObject>(at.objects[i].shape));
             else
                 part.objects.push_back(at.objects[i]);
-        box.add(world_box(gathered_parts(part, {}, stop)));
+        box.add(world_box(named_by_frame(part, parts)));
     }
     return box;
 }
@@ -337,7 +339,9 @@ std::vector<std::vector<SourceSolid>> still_meshes(const SceneDescription& descr
 SceneSource gathered_scene(const SceneDescription& description, SceneAssets assets, StopSignal stop,
                            std::shared_ptr<const MovingScene> moving = nullptr) {
     const bool keeps_assets = description.motion && !moving;  // else they are freed as they are placed
-    SceneSource source = gathered_parts(description, keeps_assets ? assets : std::move(assets), stop, moving.get());
+    SceneSource source = named_by_frame(description, [&] {
+        return gathered_parts(description, keeps_assets ? assets : std::move(assets), stop, moving.get());
+    });
     if (keeps_assets) {
         const Box box = box_of_motion(description, assets, stop);
         moving = std::make_shared<const MovingScene>(

@@ -70,6 +70,19 @@ struct SceneSource {
     std::shared_ptr<const SceneDescription> own;                // keeps the description of a frame
 };
 
+/// What make() returns. Its error names the frame that a description is at, if keys change it.
+template <class Make>
+auto named_by_frame(const SceneDescription& description, const Make& make) {
+    const bool moves = description.motion != nullptr;
+    const std::string place = "frame " + std::to_string(description.shown);
+    try {
+        return make();
+    } catch (const Error& error) {
+        if (!moves || error.kind() == ErrorKind::interrupted) throw;
+        throw error.at(place);
+    }
+}
+
 /// Checks every number that affects the compiled scene, and places the meshes. The assets are the description's, which
 /// must outlive the result. Throws Error with the place.
 SceneSource gather_scene(const SceneDescription& description, SceneAssets assets, StopSignal stop = {});
