@@ -34,6 +34,14 @@ class TileRenderer {
     std::unique_ptr<void, void (*)(void*)> tile_;
 };
 
+/// The widest tile renderers that the processor runs, with at most so many lanes (0: any number); null if there are
+/// none.
+template <class Real>
+const TileFunctions* widest_tiles(int most_lanes);
+
+/// Hides AVX-512 from widest_tiles in this process; for tests. False if there was none.
+bool hide_avx512();
+
 /// The tile renderers of a scene, with at most so many lanes (0: any number); null if its rays are traced one after the
 /// other.
 template <class Real>

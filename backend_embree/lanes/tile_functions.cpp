@@ -1,13 +1,17 @@
 #include "backend_embree/lanes/tile_functions.h"
 
+#include <atomic>
+
 #include "backend_embree/lanes/lane_renderer.h"
 
 namespace cistula {
 namespace {
 
 #ifdef CISTULA_AVX512
+std::atomic<bool> avx512_is_hidden = false;
+
 bool has_avx512() {
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+    return !avx512_is_hidden && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
            __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
            __builtin_cpu_supports("avx512cd");
 }
@@ -30,13 +34,30 @@ const TileFunctions* avx2_copy() {
 }  // namespace
 
 template <class Real>
-const TileFunctions* tile_functions(const LaneScene<Real>& scene, int most_lanes) {
-    static const TileFunctions* const copies[] = {avx512_copy<Real>(), avx2_copy<Real>()};
-    for (const TileFunctions* copy : copies)
-        if (copy != nullptr && (most_lanes == 0 || copy->lanes <= most_lanes))
-            return copy->lanes < scene.least_lanes ? nullptr : copy;
+const TileFunctions* widest_tiles(int most_lanes) {
+    for (const TileFunctions* copy : {avx512_copy<Real>(), avx2_copy<Real>()})
+        if (copy != nullptr && (most_lanes == 0 || copy->lanes <= most_lanes)) return copy;
     return nullptr;
 }
+
+bool hide_avx512() {
+#ifdef CISTULA_AVX512
+    const bool was_there = has_avx512();
+    avx512_is_hidden = true;
+    return was_there;
+#else
+    return false;
+#endif
+}
+
+template <class Real>
+const TileFunctions* tile_functions(const LaneScene<Real>& scene, int most_lanes) {
+    const TileFunctions* const widest = widest_tiles<Real>(most_lanes);
+    return widest == nullptr || widest->lanes < scene.least_lanes ? nullptr : widest;
+}
+
+template const TileFunctions* widest_tiles<float>(int);
+template const TileFunctions* widest_tiles<double>(int);
 
 template const TileFunctions* tile_functions(const LaneScene<float>&, int);
 template const TileFunctions* tile_functions(const LaneScene<double>&, int);

@@ -12,6 +12,7 @@
 #include "cistula/geometry/ray.h"
 #include "testing/support/endless_scene.h"
 #include "testing/support/golden.h"
+#include "testing/support/lanes.h"
 #include "testing/support/pictures/film_layers.h"
 #include "testing/support/read_text.h"
 #include "testing/support/shipped_scenes.h"
@@ -26,15 +27,17 @@ class LaneTest : public ::testing::Test {
   public:
     /// Renders with at most so many lanes, and compares with one.
     void compare(const SceneDescription& scene, FrameSettings settings, const std::string& name) {
-        const auto renderer = make_embree_renderer<Real>(compile_scene<Real>(scene), EmbreeOptions());
+        const std::shared_ptr<const CompiledScene<Real>> compiled = compile_scene<Real>(scene);
+        const std::optional<int> least = test::least_lanes(*compiled, scene.camera, settings);
+        if (least && *least <= widest_known) in_lanes_.insert(name);
+        const auto renderer = make_embree_renderer<Real>(compiled, EmbreeOptions());
         settings.lanes = 1;
         const Film expected = golden::render_with(*renderer, scene, settings);
         EXPECT_EQ(renderer->lanes(), 1) << name;
         for (const int lanes : {4, 8, 16}) {
             settings.lanes = lanes;
             const Film film = golden::render_with(*renderer, scene, settings);
-            if (renderer->lanes() > 1) in_lanes_.insert(name);
-            EXPECT_LE(renderer->lanes(), lanes);
+            EXPECT_EQ(renderer->lanes(), test::expected_lanes<Real>(least, lanes)) << name << ", " << lanes << " lanes";
             EXPECT_EQ(record_hash(film), record_hash(expected)) << name << ", " << lanes << " lanes";
             EXPECT_EQ(film.flags, expected.flags) << name;
             EXPECT_TRUE(film.layers.plan == expected.layers.plan) << name;
@@ -45,10 +48,12 @@ class LaneTest : public ::testing::Test {
         }
     }
 
-    /// The number of scenes that were traced in lanes.
+    /// The number of scenes that the widest lanes take, whether this processor has them or not.
     size_t in_lanes() const { return in_lanes_.size(); }
 
   private:
+    static constexpr int widest_known = 64 / sizeof(Real);  // of AVX-512
+
     /// All words of the film's layers, where tables of objects have no order.
     static std::vector<int64_t> words_of(const Film& film) {
         if (film.layers.plan.objects >= 0) return test::ordered_words(film);
@@ -60,6 +65,24 @@ class LaneTest : public ::testing::Test {
 
 using Reals = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(LaneTest, Reals);
+
+/// Hides AVX-512 where the environment says so, and skips all tests if there is none to hide.
+class HiddenSets : public ::testing::Environment {
+    void SetUp() override {
+        if (test::is_without_avx512() && !hide_avx512()) GTEST_SKIP() << "without AVX-512, as all other tests";
+    }
+};
+const ::testing::Environment* const hidden_sets = ::testing::AddGlobalTestEnvironment(new HiddenSets);
+
+TYPED_TEST(LaneTest, FillTheWidestRegisterThatIsNotHidden) {
+    const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
+                            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+                            __builtin_cpu_supports("avx512vl");
+    const int bytes = CISTULA_AVX512_IS_COMPILED && has_avx512 && !test::is_without_avx512() ? 64 : 32;
+    ASSERT_NE(widest_tiles<TypeParam>(0), nullptr);
+    EXPECT_EQ(widest_tiles<TypeParam>(0)->lanes, bytes / int(sizeof(TypeParam)));
+    EXPECT_EQ(widest_tiles<TypeParam>(2), nullptr);
+}
 
 TYPED_TEST(LaneTest, ShippedScenesAreEqual) {
     for (const char* name : {"benchmark",
