@@ -240,7 +240,7 @@ class Scene:
 
 
 class SceneBuilder:
-    """A scene of a dict, to which meshes and textures are added as arrays.
+    """A scene of a dict, to which meshes and textures are added as arrays. Keeps copies of all that is given.
 
     >>> b = SceneBuilder({"materials": {"clay": {"color": 0.7}}, "lights": [{"position": [4, -4, 8]}]})
     >>> b.mesh("torus", vertices, triangles, material="clay")
@@ -261,19 +261,19 @@ class SceneBuilder:
         of a texture; normals: N x 3, outward, of any length: the mesh is smooth. keys: what meshes have in scene files, such as
         center, scale, rotate and smooth.
         """
-        corners = np.asarray(triangles)
+        corners = np.array(triangles)
         if corners.dtype.kind not in "iu" or corners.ndim != 2 or corners.shape[1] != 3:
             raise ArgumentError(f"triangles: must be M x 3 whole numbers, not {corners.dtype} of shape {corners.shape}")
-        points = _points("vertices", vertices)
+        points = _points("vertices", np.array(vertices))
         if corners.size and not (0 <= corners.min() and corners.max() < len(points)):
             raise ArgumentError(f"triangles: must be 0 to {len(points) - 1}, the last of the vertices; "
                                 f"they are {corners.min()} to {corners.max()}")
-        places = None if uvs is None else np.asarray(uvs)
+        places = None if uvs is None else np.array(uvs)
         if places is not None and (places.dtype.kind not in "fiu" or places.shape != (len(points), 2)):
             raise ArgumentError(f"uvs: must be {len(points)} x 2 numbers, one for each vertex, not {places.dtype} of shape {places.shape}")
         if places is not None:
             places = np.ascontiguousarray(places, dtype=np.float64)
-        ways = None if normals is None else _points("normals", normals)
+        ways = None if normals is None else _points("normals", np.array(normals))
         if ways is not None and len(ways) != len(points):
             raise ArgumentError(f"normals: must be {len(points)} x 3 numbers, one for each vertex, not {len(ways)}")
         objects = self._scene.setdefault("objects", [])
@@ -288,7 +288,7 @@ class SceneBuilder:
         of floats, which are linear; the first three channels are red, green and blue, one is gray. keys: what textures have in
         scene files: colorspace, filter, repeat, strict.
         """
-        texels = np.asarray(array)
+        texels = np.array(array)
         if texels.dtype.kind == "f":
             texels = texels.astype(np.float32)
         if texels.ndim not in (2, 3) or texels.dtype not in (np.uint8, np.uint16, np.float32):

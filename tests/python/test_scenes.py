@@ -55,6 +55,28 @@ def test_meshes_with_normals_are_smooth() -> None:
         with_keys(normals=-CORNERS)
 
 
+@pytest.mark.parametrize("kind", ["f4", "f8", "u1"])
+def test_a_buffer_that_is_used_again_changes_nothing_that_was_added(kind: str) -> None:
+    """Whatever its type: what is converted is a copy by itself, what is not is one, too."""
+    scene = {**SCENE, "materials": {"clay": {"texture": "t"}}, "objects": []}
+    texels = np.random.default_rng(5).integers(0, 256, (4, 4, 3)).astype(kind)
+    arrays: list[Any] = [CORNERS.astype("f8"), FACES.astype("u4"), np.array([[0, 0], [1, 0], [0, 1], [1, 1]], "f8"),
+                         CORNERS.astype("f8")]
+
+    def built(change: Callable[[Any], None]) -> str:
+        given, picture = [one.copy() for one in arrays], texels.copy()
+        b = cistula.SceneBuilder(scene).mesh("t", *given[:3], material="clay", normals=given[3])
+        b.texture("t", picture)
+        for one in (*given[:4], picture):
+            change(one)
+        return b.build().hash
+
+    def scribble(one: Any) -> None:
+        one[:] = 7 * one[:]
+        one[0] = 0
+    assert built(scribble) == built(lambda one: None)
+
+
 def test_textures_are_arrays() -> None:
     def with_texture(array: Any, **keys: object) -> np.ndarray[Any, Any]:
         scene = {**SCENE, "materials": {"floor": {"texture": "t"}}, "objects": [], "ambient": 1, "camera": {"position": [0, 0, 3],
