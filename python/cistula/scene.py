@@ -75,6 +75,14 @@ def _whole(name: str, value: object) -> int:
         raise ArgumentError(f"{name}={value!r}: must be a whole number", argument=name) from None
 
 
+def path_text(name: str, path: str | os.PathLike[str]) -> str:
+    """A file's name as the library takes it. Raises ArgumentError where a zero byte is in it, which would cut it."""
+    text = os.fsdecode(path)
+    if "\0" in text:
+        raise ArgumentError(f"{name}={text!r}: a zero byte is in the name; give the name of a file", argument=name)
+    return text
+
+
 def _points(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
     array = np.asarray(values)
     if array.dtype.kind not in "fiu" or array.shape[-1:] != (3,) or array.ndim > 2:
@@ -126,7 +134,7 @@ class Scene:
         precision: "float", "double" or "auto", the default: double where a part of the scene is too small for float.
         Raises SceneError with the place, FileError. Remarks are Python warnings.
         """
-        return cls(_core.Description.read(os.fspath(path)), precision, max_texture_gb)
+        return cls(_core.Description.read(path_text("path", path)), precision, max_texture_gb)
 
     @classmethod
     def from_dict(cls, scene: Mapping[str, object], *, folder: str | os.PathLike[str] = "", precision: str | None = None,
@@ -249,7 +257,7 @@ class SceneBuilder:
 
     def __init__(self, scene: Mapping[str, object], *, folder: str | os.PathLike[str] = "") -> None:
         self._scene: dict[str, Any] = _plain(scene, "")
-        self._folder = os.fspath(folder)
+        self._folder = path_text("folder", folder)
         self._meshes: dict[int, tuple[Any, Any, Any, Any]] = {}
         self._textures: dict[str, Any] = {}
 

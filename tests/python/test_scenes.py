@@ -136,6 +136,17 @@ def test_a_wrong_scene_is_told_by_its_pointer() -> None:
     assert error.value.pointer == "/objects/1/material"
 
 
+def test_a_zero_byte_in_a_name_cuts_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "scene.json"
+    file.write_text(json.dumps(SCENE))
+    image = cistula.Scene.load(os.fsencode(file)).render(size=(4, 3))  # type: ignore[arg-type]
+    for name, call in (("path", lambda: cistula.Scene.load(f"{file}\0.png")), ("folder", lambda: cistula.Scene.from_dict(SCENE, folder="a\0b")),
+                       ("a", lambda: cistula.compare(f"{file}\0.exr", image)), ("b", lambda: cistula.compare(image, f"{file}\0.exr"))):
+        with pytest.raises(cistula.ArgumentError, match=f"^{name}=.*a zero byte is in the name") as error:
+            call()
+        assert isinstance(error.value, ValueError) and error.value.argument == name
+
+
 def test_files_that_are_wrong(tmp_path: Path) -> None:
     with pytest.raises(cistula.FileError, match="nothing.json") as error:
         cistula.Scene.load("/nothing.json")
