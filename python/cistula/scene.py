@@ -5,6 +5,7 @@ import json
 import math
 import operator
 import os
+import threading
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypedDict
@@ -115,6 +116,20 @@ def _plain(value: object, pointer: str) -> Any:
     raise SceneError(f"dict: {pointer or '/'}: expected what JSON has, found {value!r}", "dict", pointer)
 
 
+class _Film(Iterator[_core.Image]):
+    """Frames, one after the other, of which several threads may take."""
+
+    def __init__(self, run: _core.Frames, progress: Progress | None) -> None:
+        self._run, self._progress, self._turn = run, progress, threading.RLock()
+
+    def __next__(self) -> _core.Image:
+        with self._turn:
+            image = self._run.next(self._progress)
+        if image is None:
+            raise StopIteration
+        return image
+
+
 class Scene:
     """A compiled scene, immutable. Made by Scene.load, Scene.from_dict and SceneBuilder.
 
@@ -214,8 +229,7 @@ class Scene:
         As render() otherwise; a GPU begins the next ones early.
         """
         numbers = [_whole("frames", number) for number in (range(self.frames) if frames is None else frames)]
-        run = _core.Frames(self._core, numbers, keywords(settings))
-        return iter(lambda: run.next(progress), None)
+        return _Film(_core.Frames(self._core, numbers, keywords(settings)), progress)
 
     def pixel(self, x: int, y: int, *, sample: int | str = "middle", frame: int = 0, size: tuple[int, int] | str | None = None,
               supersample: int | None = None, depth: int | None = None, cutoff: float | None = None) -> pixel.Pixel:

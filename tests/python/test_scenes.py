@@ -5,6 +5,7 @@ import json
 import os
 import pickle
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -134,6 +135,16 @@ def test_a_wrong_scene_is_told_by_its_pointer() -> None:
     with pytest.raises(cistula.SceneError) as error:
         cistula.SceneBuilder(SCENE).mesh("t", CORNERS, FACES, material="clya").build()
     assert error.value.pointer == "/objects/1/material"
+
+
+def test_several_threads_take_all_frames_of_a_film() -> None:
+    film, taken = cistula.Scene.from_dict(SCENE).film([0] * 40, size=(8, 6)), list[int]()
+    threads = [threading.Thread(target=lambda: taken.extend(image.frame for image in film)) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert taken == [0] * 40 and next(film, None) is None
 
 
 def test_a_zero_byte_in_a_name_cuts_nothing(tmp_path: Path) -> None:
