@@ -50,6 +50,10 @@ std::string event_record(ProgressStyle style, const EventRecord& event, const Pr
     if (event.fraction >= 0) json["fraction"] = event.fraction;
     if (!event.file.empty()) json["file"] = event.file;
     if (!event.text.empty()) json["text"] = event.text;
+    if (name == "read") {
+        json["files"] = Json::array();
+        for (const std::string& file : event.files) json["files"].push_back(utf8_name(file));
+    }
     return line_of(json);
 }
 

@@ -10,14 +10,15 @@
 
 namespace cistula {
 
-/// Something that happens to a film. `event`: "begin", "frame" (its first ray), "rendered", "written", "kept" (complete
-/// since an earlier run), "snapshot", "message" or "end".
+/// Something that happens to a film. `event`: "read" (the scene), "begin", "frame" (its first ray), "rendered",
+/// "written", "kept" (complete since an earlier run), "snapshot", "message" or "end".
 struct EventRecord {
     const char* event;
     int frame = -1;         // -1: none
     std::string file = {};  // empty: none
     double fraction = -1;   // of the frame's pixels in a snapshot; negative: none
     std::string text = {};
+    std::vector<std::string> files = {};  // of "read"
 };
 
 /// Records are one or more lines without the last line end, or empty where the style has none for this.

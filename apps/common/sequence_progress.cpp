@@ -62,6 +62,10 @@ SequenceProgress::SequenceProgress(ProgressStyle style, Talk talk, const RenderP
       progress_(progress),
       line_(style_, [this](int columns) { return text(columns); }) {}
 
+void SequenceProgress::read(const std::vector<std::string>& files) {
+    record({.event = "read", .files = files});
+}
+
 void SequenceProgress::begin(size_t frames) {
     line_.update([&] {
         count_ = frames;

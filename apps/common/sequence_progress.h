@@ -41,6 +41,7 @@ class SequenceProgress : public SequenceEvents {
   public:
     SequenceProgress(ProgressStyle style, Talk talk, const RenderProgress& progress);
 
+    void read(const std::vector<std::string>& files) override;
     void begin(size_t frames) override;
     void kept(int frame, const std::string& file) override;
     void begin_frame(int frame, size_t index, size_t count, uint64_t pixels) override;

@@ -195,6 +195,7 @@ RunStats render_sequence(const RenderRequest& asked, SequenceEvents& events, Ren
         enter_stage(Stage::read);
         SceneSource source = gather_scene(description, progress.stop);
         enter_stage(Stage::other);
+        events.read(source.files);
         if (const std::string turns = files.prepare(source.files); !turns.empty()) events.warning(turns);
         enter_stage(Stage::compile);
         Scene scene = compile_for(request, std::move(source), events);

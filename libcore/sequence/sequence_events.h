@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace cistula {
 
@@ -30,6 +31,8 @@ class SequenceEvents {
     virtual void planned(const FrameSettings&) {}
     /// A scene is compiled and its renderer made: what is known of them.
     virtual void ready(const RunStats&) {}
+    /// The files that the scene names, its meshes, their libraries and maps, which may be missing.
+    virtual void read(const std::vector<std::string>& /*files*/) {}
     /// A sequence of so many frames, of which some may be complete.
     virtual void begin(size_t /*frames*/) {}
     /// A frame that is complete since an earlier run.

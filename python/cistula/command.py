@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
+from cistula.errors import DeviceError, Error, FileError, FrameError
+
 
 class Refused(Exception):
     """An error that ends a command: a line that says what is wrong and what would be right, and the exit code, 2 for the
@@ -95,6 +97,8 @@ def run(name: str, work: Callable[[], int]) -> int:
         return code
     except Refused as error:
         message, code = str(error), error.code
+    except Error as error:
+        message, code = str(error), {FrameError: 1, FileError: 3, DeviceError: 4}.get(type(error), 2)
     except OSError as error:
         message, code = f"{error.filename or 'standard output'}: {error.strerror or error}", 3
         if not error.filename:  # what is left to be said cannot be said at the end either
@@ -103,5 +107,7 @@ def run(name: str, work: Callable[[], int]) -> int:
         message, code = "there is not enough memory", 3
     except KeyboardInterrupt:
         message, code = "interrupted", 130
+    except Exception as error:
+        message, code = f"a fault of this program: {type(error).__name__}: {' '.join(str(error).split())}", 1
     print(f"cistula {name}: {message}", file=sys.stderr)
     return code

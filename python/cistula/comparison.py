@@ -5,7 +5,7 @@ import os
 from collections.abc import Callable, Sequence
 
 from . import _core
-from .scene import keywords
+from .scene import keywords, path_text
 
 
 def compare(a: str | os.PathLike[str] | _core.Image, b: str | os.PathLike[str] | _core.Image, *, fail: float | None = None,
@@ -16,7 +16,7 @@ def compare(a: str | os.PathLike[str] | _core.Image, b: str | os.PathLike[str] |
     differ by more. Without them every bit counts. layers: patterns with * and ? of the channels that count. The result is
     true where the pictures pass. Raises FileError, ArgumentError.
     """
-    first, second = (one if isinstance(one, _core.Image) else os.fspath(one) for one in (a, b))
+    first, second = (one if isinstance(one, _core.Image) else path_text(name, one) for name, one in (("a", a), ("b", b)))
     names = [] if layers is None else layers.split(",") if isinstance(layers, str) else list(layers)
     return _core.compare(first, second, fail, failpercent, hardfail, names)
 

@@ -5,6 +5,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
@@ -78,7 +79,7 @@ class Film:
             if previews:
                 command += ["--preview", f"{folder}/{self.preview.replace('/', '_')}"] if self.preview else []
                 command += self.look
-            run = subprocess.Popen([*command, "--progress", "json", "-q"], stdout=subprocess.PIPE, stderr=said)
+            run = subprocess.Popen([*command, "--progress", "json"], stdout=subprocess.PIPE, stderr=said)
             assert run.stdout
             try:
                 for line in run.stdout:
@@ -92,15 +93,20 @@ class Film:
                 run.stdout.close()
                 run.wait()
 
-    def frames(self, given: str, tile: list[str]) -> list[int]:
-        """The frames that are to be rendered. By then render has begun to: scene and options are right."""
-        count = 0
+    def begun(self, given: str, tile: list[str]) -> tuple[list[int], list[Path], list[str]]:
+        """The frames that are to be rendered, the files that there are of those that the scene names, and the warnings. By
+        then render has begun to: scene and options are right."""
+        count, files, said = 0, dict[Path, bool](), []
         for event, _ in self.events(*(["-f", given] if given else []), *tile, previews=not tile):
+            if event["event"] == "read":
+                files = dict.fromkeys(filter(Path.is_file, map(path_of, event["files"])), True)
+            if event["event"] == "message" and event["text"].startswith("render: warning: "):
+                said.append(event["text"][len("render: "):])
             if event["event"] == "begin":
                 count = event["frames"]
             if event["event"] == "frame":
                 break
-        return parse_frames(given) if given else list(range(count))
+        return parse_frames(given) if given else list(range(count)), list(files), said
 
     def seconds(self, frames: list[int], at_most: float = 20) -> float:
         """What a frame takes here: the mean of at most four, from the first to the last, or of what is done in time."""
@@ -115,23 +121,11 @@ class Film:
         return max(seconds, 1e-4)
 
 
-def assets_of(scene: Path) -> list[Path]:
-    """The files that a scene names, and those that its OBJ files do: all words and quoted texts that are names of files."""
-    found = {scene: True}
-    waiting = [scene]
-    while waiting:
-        file = waiting.pop()
-        with open(file, errors="surrogateescape") as lines:
-            for line in lines:
-                if file.suffix in (".obj", ".mtl") and not re.match(r"\s*(mtllib|map_|bump|disp|norm)", line):
-                    continue
-                quoted = map(json.loads, re.findall(r'"(?:[^"\\]|\\["\\/])*"', line))
-                for name in (*quoted, *line.split(), line.strip().partition(" ")[2]):
-                    path = Path(os.path.normpath(file.parent / name))
-                    if re.search(r"\.[A-Za-z]\w*$", name) and path not in found and path.is_file():
-                        found[path] = True
-                        waiting += [path] if path.suffix in (".obj", ".mtl") else []
-    return list(found)[1:]
+def path_of(name: str) -> Path:
+    """The absolute path of a file as a record names it, where %E9 is a byte that is no UTF-8, and %25 a %."""
+    plain = re.sub(rb"%(25|[89A-F][0-9A-F])", lambda m: bytes.fromhex(m[1].decode()), name.encode())
+    path = Path(os.fsdecode(plain))
+    return Path(os.path.realpath(path.parent)) / path.name  # a link by its own name
 
 
 def template(job: dict[str, str], title: str, seconds: int) -> tuple[dict[str, Any], dict[str, str]]:
@@ -242,7 +236,7 @@ exit codes: as of render""")
     if look and not options.preview:
         raise Refused(f"{look[0]}: is of previews; give --preview FILE.png, too")
     film = Film([scene, *more], options.output, options.preview, look)
-    frames = film.frames(options.frames, ["--tiles", options.tiles, "--tile", "0"] if options.tiles else [])
+    frames, files, said = film.begun(options.frames, ["--tiles", options.tiles, "--tile", "0"] if options.tiles else [])
     chunk, seconds = options.frames_per_task, 0.0
     if not chunk:
         seconds = film.seconds(frames)
@@ -261,7 +255,7 @@ exit codes: as of render""")
            "ocio": os.path.abspath(ocio) if ocio and "://" not in ocio else ocio}
     form, paths = template(job, name, 0 if options.frames_per_task else int(options.task_seconds))
     values = [{"name": n, "value": from_folder(path)} for n, path in paths.items()]
-    assets = [str(path.resolve()) for path in assets_of(Path(scene))]
+    assets = [str(path) for path in files]
     threads = re.search(r"--threads[= ](\d+)", job["options"])
     fields = {"name": name, "last": count - 1, "cpus": options.cpus or (threads and threads[1]) or os.cpu_count()}
     write_whole({folder / n: text.encode() for n, text in {
@@ -271,6 +265,8 @@ exit codes: as of render""")
         "job.slurm": TASKS.format(**fields), "finish.slurm": FINISH.format(**fields | {"name": name + "-finish"}),
         "submit.sh": SUBMIT, "Makefile": MAKEFILE.format(**fields)}.items()})
     if not options.quiet:
+        for text in said:
+            print(f"cistula farm: {text}", file=sys.stderr)
         each = f", about {min(chunk, len(frames)) * seconds / tiles:.3g} s each on this machine" if seconds else ""
         print(f"{shown(str(folder))}: {count} tasks for {len(frames)} frames of {tiles} tiles{each}")
         given = [word for n, path in paths.items() for word in ("-p", f"{n}={path}")]

@@ -26,6 +26,8 @@ def parse_frames(text: str) -> list[int]:
         found = RANGE.fullmatch(item.strip())
         if not found or int(found[3] or 1) == 0:
             raise ValueError(f"'{item}' is no frame, no range A-B and no A-BxSTEP; a list looks like 0-299x5,7")
+        if int(found[2] or found[1]) < int(found[1]):
+            raise ValueError(f"'{item}' has no frame: it ends before it begins")
         frames.update(range(int(found[1]), int(found[2] or found[1]) + 1, int(found[3] or 1)))
     return sorted(frames)
 
@@ -124,6 +126,11 @@ def main(words: list[str]) -> int:
             job[key] = value
         else:
             more.append(word)
+    try:
+        parse_frames(job.get("frames", "0"))
+    except ValueError as error:
+        print(f"task.py: Frames: {error}", file=sys.stderr)
+        return 2
     if "step" not in job and more[:1] != ["finish"]:
         frames, tiles, chunk = parse_frames(job.get("frames", "0")), tiles_of(job["tiles"]), int(job.get("chunk", 1))
         count, number = -(-len(frames) // chunk) * tiles, int(more[0]) if more and more[0].isdecimal() else -1

@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cistula.command import Parser, Refused, shown
+from cistula.stl import read_solids
 
 Array = npt.NDArray[Any]
 CLAY = {"color": 0.7}
@@ -82,28 +83,9 @@ class Mesh:
 
 def read_stl(path: Path) -> Mesh:
     """Solids of an STL file. Raises Refused."""
-    try:
-        import trimesh
-    except ImportError:
-        raise Refused("STL files are read by trimesh, which is not there; pip install 'cistula[import]'") from None
-    with open(path, "rb") as file, warnings.catch_warnings():
-        head, size = file.read(84), path.stat().st_size
-        count = int.from_bytes(head[80:], "little")
-        if not head.lstrip().lower().startswith(b"solid") and size != 84 + 50 * count:
-            raise Refused(f"{shown(str(path))}: has {size} bytes, but the {count} triangles that it counts at byte 80 take {84 + 50 * count}; "
-                          "it is cut off, or no STL file", 3)
-        file.seek(0)
-        warnings.simplefilter("error")  # text that is no number would only be warned of
-        try:
-            loaded = trimesh.load_scene(file, file_type="stl", process=False)
-        except Exception as error:
-            raise Refused(f"{shown(str(path))}: cannot be read as an STL file: {' '.join(str(error).split())}", 3) from error
-    solids = [(str(name), solid) for name, solid in loaded.geometry.items() if len(getattr(solid, "faces", ()))]
-    if not solids:
-        raise Refused(f"{shown(str(path))}: no triangles were found in it; an STL of text begins with \"solid\" and ends with "
-                      "\"endsolid\"", 3)
-    many = len(solids) > 1
-    return Mesh([Part(name if many else path.stem, np.asarray(solid.vertices, float), np.asarray(solid.faces)) for name, solid in solids])
+    solids, remarks = read_solids(path)
+    return Mesh([Part(name if len(solids) > 1 else path.stem, corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
+                 for name, corners in solids], remarks)
 
 
 def read_mesh(path: Path) -> Mesh:
@@ -181,6 +163,10 @@ def scene_of(mesh: Mesh, source: str, up_axis: str) -> tuple[dict[str, Any], dic
     used = used[np.isfinite(used).all(axis=1)]
     if not len(used) or not np.ptp(used, axis=0).any():
         raise Refused(f"{shown(source)}: has no triangle with an area", 3)
+    size, reach = np.ptp(used, axis=0).max(), np.abs(used).max()
+    if not (1e-29 <= size and reach <= 1e29):  # what a camera around it may say
+        raise Refused(f"{shown(source)}: is {size:.3g} in size with coordinates up to {reach:.3g}; a scene takes sizes from 1e-29, "
+                      "coordinates to 1e29: scale it", 3)
     around = surroundings(used, up_axis)
     files: dict[str, bytes] = {}
     textures: dict[str, Any] = {}

@@ -5,6 +5,7 @@ import json
 import math
 import operator
 import os
+import threading
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypedDict
@@ -75,6 +76,14 @@ def _whole(name: str, value: object) -> int:
         raise ArgumentError(f"{name}={value!r}: must be a whole number", argument=name) from None
 
 
+def path_text(name: str, path: str | os.PathLike[str]) -> str:
+    """A file's name as the library takes it. Raises ArgumentError where a zero byte is in it, which would cut it."""
+    text = os.fsdecode(path)
+    if "\0" in text:
+        raise ArgumentError(f"{name}={text!r}: a zero byte is in the name; give the name of a file", argument=name)
+    return text
+
+
 def _points(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
     array = np.asarray(values)
     if array.dtype.kind not in "fiu" or array.shape[-1:] != (3,) or array.ndim > 2:
@@ -107,6 +116,20 @@ def _plain(value: object, pointer: str) -> Any:
     raise SceneError(f"dict: {pointer or '/'}: expected what JSON has, found {value!r}", "dict", pointer)
 
 
+class _Film(Iterator[_core.Image]):
+    """Frames, one after the other, of which several threads may take."""
+
+    def __init__(self, run: _core.Frames, progress: Progress | None) -> None:
+        self._run, self._progress, self._turn = run, progress, threading.RLock()
+
+    def __next__(self) -> _core.Image:
+        with self._turn:
+            image = self._run.next(self._progress)
+        if image is None:
+            raise StopIteration
+        return image
+
+
 class Scene:
     """A compiled scene, immutable. Made by Scene.load, Scene.from_dict and SceneBuilder.
 
@@ -126,7 +149,7 @@ class Scene:
         precision: "float", "double" or "auto", the default: double where a part of the scene is too small for float.
         Raises SceneError with the place, FileError. Remarks are Python warnings.
         """
-        return cls(_core.Description.read(os.fspath(path)), precision, max_texture_gb)
+        return cls(_core.Description.read(path_text("path", path)), precision, max_texture_gb)
 
     @classmethod
     def from_dict(cls, scene: Mapping[str, object], *, folder: str | os.PathLike[str] = "", precision: str | None = None,
@@ -206,8 +229,7 @@ class Scene:
         As render() otherwise; a GPU begins the next ones early.
         """
         numbers = [_whole("frames", number) for number in (range(self.frames) if frames is None else frames)]
-        run = _core.Frames(self._core, numbers, keywords(settings))
-        return iter(lambda: run.next(progress), None)
+        return _Film(_core.Frames(self._core, numbers, keywords(settings)), progress)
 
     def pixel(self, x: int, y: int, *, sample: int | str = "middle", frame: int = 0, size: tuple[int, int] | str | None = None,
               supersample: int | None = None, depth: int | None = None, cutoff: float | None = None) -> pixel.Pixel:
@@ -240,7 +262,7 @@ class Scene:
 
 
 class SceneBuilder:
-    """A scene of a dict, to which meshes and textures are added as arrays.
+    """A scene of a dict, to which meshes and textures are added as arrays. Keeps copies of all that is given.
 
     >>> b = SceneBuilder({"materials": {"clay": {"color": 0.7}}, "lights": [{"position": [4, -4, 8]}]})
     >>> b.mesh("torus", vertices, triangles, material="clay")
@@ -249,7 +271,7 @@ class SceneBuilder:
 
     def __init__(self, scene: Mapping[str, object], *, folder: str | os.PathLike[str] = "") -> None:
         self._scene: dict[str, Any] = _plain(scene, "")
-        self._folder = os.fspath(folder)
+        self._folder = path_text("folder", folder)
         self._meshes: dict[int, tuple[Any, Any, Any, Any]] = {}
         self._textures: dict[str, Any] = {}
 
@@ -261,19 +283,19 @@ class SceneBuilder:
         of a texture; normals: N x 3, outward, of any length: the mesh is smooth. keys: what meshes have in scene files, such as
         center, scale, rotate and smooth.
         """
-        corners = np.asarray(triangles)
+        corners = np.array(triangles)
         if corners.dtype.kind not in "iu" or corners.ndim != 2 or corners.shape[1] != 3:
             raise ArgumentError(f"triangles: must be M x 3 whole numbers, not {corners.dtype} of shape {corners.shape}")
-        points = _points("vertices", vertices)
+        points = _points("vertices", np.array(vertices))
         if corners.size and not (0 <= corners.min() and corners.max() < len(points)):
             raise ArgumentError(f"triangles: must be 0 to {len(points) - 1}, the last of the vertices; "
                                 f"they are {corners.min()} to {corners.max()}")
-        places = None if uvs is None else np.asarray(uvs)
+        places = None if uvs is None else np.array(uvs)
         if places is not None and (places.dtype.kind not in "fiu" or places.shape != (len(points), 2)):
             raise ArgumentError(f"uvs: must be {len(points)} x 2 numbers, one for each vertex, not {places.dtype} of shape {places.shape}")
         if places is not None:
             places = np.ascontiguousarray(places, dtype=np.float64)
-        ways = None if normals is None else _points("normals", normals)
+        ways = None if normals is None else _points("normals", np.array(normals))
         if ways is not None and len(ways) != len(points):
             raise ArgumentError(f"normals: must be {len(points)} x 3 numbers, one for each vertex, not {len(ways)}")
         objects = self._scene.setdefault("objects", [])
@@ -288,7 +310,7 @@ class SceneBuilder:
         of floats, which are linear; the first three channels are red, green and blue, one is gray. keys: what textures have in
         scene files: colorspace, filter, repeat, strict.
         """
-        texels = np.asarray(array)
+        texels = np.array(array)
         if texels.dtype.kind == "f":
             texels = texels.astype(np.float32)
         if texels.ndim not in (2, 3) or texels.dtype not in (np.uint8, np.uint16, np.float32):

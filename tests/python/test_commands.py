@@ -43,7 +43,7 @@ def test_a_program_that_is_interrupted_leaves_no_file(source: Path, tmp_path: Pa
     command = [sys.executable, "-m", "cistula", "render", str(source / "scenes" / "infinity.json"), "-o", str(tmp_path / "a.exr"), "--res", "4096x4096",
                "--progress", "json"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
-        assert run.stdout and b"begin" in run.stdout.readline()
+        assert run.stdout and b"read" in run.stdout.readline() and b"begin" in run.stdout.readline()
         run.send_signal(signal.SIGINT)
         assert run.wait(60) == 130 and not (tmp_path / "a.exr").exists()
 

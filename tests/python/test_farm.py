@@ -323,9 +323,41 @@ def test_the_files_of_a_scene_are_listed(film: Farm) -> None:
     for name in ("t.data", "w.png", "other.png"):
         (film.folder / name).write_bytes(b"")
     (film.folder / "s.json").write_text(json.dumps(scene, indent=1))
-    from cistula.farm import assets_of
-    assert sorted(str(path.relative_to(film.folder)) for path in assets_of(film.folder / "s.json")) == [
-        "meshes/my colors.mtl", "meshes/my mesh.obj", "t.data", "w.png"]
+    assert assets(film) == ["meshes/my colors.mtl", "meshes/my mesh.obj", "t.data", "w.png"]
+
+
+def assets(film: Farm) -> list[str]:
+    """The files that the job's bundle names, by their names in the scene's folder."""
+    film.farm("-o", "out/f.##.exr", "--to", "farm", "-f", "0", "--frames-per-task", "1")
+    listed = json.loads((film.folder / "farm/asset_references.json").read_text())["assetReferences"]["inputs"]["filenames"]
+    return sorted(os.path.relpath(name, film.folder) for name in listed)
+
+
+@pytest.mark.parametrize("mesh,text,library,name", [
+    ("tëil.obj", "mtllib c.mtl\n", "c.mtl", "c.mtl"), ("PART.OBJ", "mtllib c.mtl\n", "c.mtl", "c.mtl"), ("a.obj", "mtllib \\\n  c.mtl\n", "c.mtl", "c.mtl"),
+    ("a.obj", "mtllib far\\c.mtl\n", "far/c.mtl", "far/c.mtl"), ("a.obj", "mtllib none.mtl\n", "a.mtl", "a.mtl"), ("a.obj", "mtllib\tthe c.mtl \n", "the c.mtl", "the c.mtl"),
+    ("a.obj", "\ufeffmtllib c.mtl\n", "c.mtl", "c.mtl"), ("a.obj", "mtllib caf\udce9 %E9.mtl\n", "caf\udce9 %E9.mtl", "caf\udce9 %E9.mtl")])
+def test_a_job_lists_what_the_reader_opened(film: Farm, mesh: str, text: str, library: str, name: str) -> None:
+    body = text + "usemtl m\nv 0 0 2\nv 1 0 2\nv 0 1 2\nf 1 2 3\n"
+    (film.folder / mesh).write_bytes(body.encode("utf-16-le") if text[0] == "\ufeff" else body.encode(errors="surrogateescape"))
+    (film.folder / library).parent.mkdir(exist_ok=True)
+    (film.folder / library).write_text("newmtl m\nKd 1 0 0\n")
+    scene = {**SCENE, "objects": [*SCENE["objects"], {"name": "m", "mesh": mesh}]}  # type: ignore[misc]
+    (film.folder / "s.json").write_text(json.dumps(scene))  # \u00eb
+    assert assets(film) == sorted([mesh, name])
+
+
+def test_a_material_file_that_is_missing_is_said(film: Farm) -> None:
+    (film.folder / "a.obj").write_text("mtllib none.mtl\nv 0 0 2\nv 1 0 2\nv 0 1 2\nf 1 2 3\n")
+    (film.folder / "s.json").write_text(json.dumps({**SCENE, "objects": [{"name": "m", "mesh": "a.obj", "material": "floor"}]}))
+    result = film.run(sys.executable, "-m", "cistula", "farm", "s.json", "-o", "f.exr", "-f", "0", "--frames-per-task", "1", "--to", "farm")
+    assert result.returncode == 0 and "there are no such material libraries: 'none.mtl'" in result.stderr
+
+
+@pytest.mark.parametrize("frames,message", [("-3-3", "is no frame"), ("5-0:-1", "is no frame"), ("5-0", "ends before it begins")])
+def test_frames_that_are_none_are_refused_in_a_line(film: Farm, frames: str, message: str) -> None:
+    result = film.run("python3", farm_task.__file__, "step=render", f"frames={frames}", "scene=s.json", "output=f.exr")
+    assert (result.returncode, result.stderr.count("\n")) == (2, 1) and message in result.stderr, result.stderr
 
 
 def openjd() -> Path:

@@ -159,7 +159,7 @@ def test_what_is_wrong_is_told_and_leaves_nothing(tmp_path: Path) -> None:
     (tmp_path / "kept").mkdir()
     (tmp_path / "good.stl").write_bytes(whole)
     for code, message, *arguments in (
-            (3, f"cut.stl: has {len(whole) - 30} bytes, but the 80 triangles", "cut.stl"), (3, "word.stl: cannot be read as an STL file", "word.stl"),
+            (3, f"cut.stl: has {len(whole) - 30} bytes, but the 80 triangles", "cut.stl"), (3, "word.stl:4: expected three numbers", "word.stl"),
             (3, "empty.stl: no triangles", "empty.stl"), (3, "bad.obj:3: expected a number, found", "bad.obj"), (3, "flat.ply: has no triangle", "flat.ply"),
             (3, "a.png", "odd.obj"), (3, "none.obj", "none.obj"), (3, "none.stl", "none.stl"), (2, "a.fbx: must be a .ply, an .obj", "a.fbx"),
             (3, "kept: is there already", "good.stl", "--to", "kept"), (2, "did you mean --to", "good.stl", "--two", "x"),
@@ -167,11 +167,69 @@ def test_what_is_wrong_is_told_and_leaves_nothing(tmp_path: Path) -> None:
         refused(tmp_path, code, message, *arguments)
 
 
-def test_what_it_stands_on_is_named_where_it_lacks(tmp_path: Path, source: Path) -> None:
-    (tmp_path / "a.stl").write_bytes(trimesh.creation.box().export(file_type="stl"))
-    run = [sys.executable, "-c", "import sys; sys.modules['trimesh'] = None; from cistula.__main__ import main; sys.exit(main(['import', 'a.stl']))"]
-    answer = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True)
-    assert (answer.returncode, answer.stderr) == (2, "cistula import: STL files are read by trimesh, which is not there; pip install 'cistula[import]'\n")
+def test_without_the_native_module_it_says_so(tmp_path: Path, source: Path) -> None:
+    (tmp_path / "a.stl").write_bytes(b"")
     answer = subprocess.run([sys.executable, "-m", "cistula", "import", "a.stl"], cwd=tmp_path, env={"PYTHONPATH": str(source / "python")},
                             capture_output=True, text=True)
     assert answer.returncode == 2 and "the native module is not here" in answer.stderr
+
+
+def stl_text(name: bytes = b"part", end: bytes = b"endsolid part\n") -> bytes:
+    """A unit cube."""
+    corners = [[CUBE[i] for i in three] for a, b, c, d in FACES for three in ((a, b, c), (a, c, d))]
+    facets = ["facet normal 0 0 1\n outer loop\n" + "".join(f"  vertex {x} {y} {z}\n" for x, y, z in t) + " endloop\nendfacet\n" for t in corners]
+    return b"solid " + name + b"\n" + "".join(facets).encode() + end
+
+
+def stl_binary(head: bytes = b"made", count: int = 12) -> bytes:
+    corners = np.array([[CUBE[i] for i in three] for a, b, c, d in FACES for three in ((a, b, c), (a, c, d))], "<f4").reshape(12, 9)
+    rows = np.zeros(12, [("normal", "<f4", 3), ("corners", "<f4", 9), ("color", "<u2")])
+    rows["corners"] = corners
+    return head.ljust(80) + count.to_bytes(4, "little") + rows.tobytes()
+
+
+@pytest.mark.parametrize("data,said", [
+    (stl_text().replace(b"\n", b"\r"), ""), (stl_text().replace(b"\n", b"\r\n"), ""), (b"\xef\xbb\xbf" + stl_text(), ""),
+    (stl_text(b"caf\xe9 \x85 facet"), ""), (stl_text(b"endsolid"), ""), (stl_text(b""), ""), (stl_text().upper(), ""),
+    (stl_text(end=b""), "ends without"), (stl_text().replace(b"normal 0 0 1", b""), ""), (stl_text().replace(b"0 0 1\n outer", b"-1.#IND nan x outer"), ""),
+    (stl_text().replace(b"vertex 1 1", b"\tVertex\t+1.0e0\t10E-1"), ""), (stl_text().replace(b"\n  vertex", b" vertex").replace(b"\nendfacet", b" endfacet"), ""),
+    (stl_text().replace(b"endfacet", b"endfacet\ncolor 1 0 0"), "'color'"[1:-1]), (stl_text() + b"\x1a\0\0", ""), (stl_text().decode().encode("utf-16"), ""),
+    (stl_binary(), ""), (stl_binary(b"solid made"), ""), (stl_binary() + b"\n", "ignored 1 bytes"), (stl_binary() + bytes(300), "ignored 300 bytes")])
+def test_stl_of_other_programs(tmp_path: Path, data: bytes, said: str) -> None:
+    (tmp_path / "a.stl").write_bytes(data)
+    code, out, error = bring(tmp_path, "a.stl")
+    assert code == 0 and (said in error if said else not error), error
+    scene = cistula.Scene.load(tmp_path / "a/a.json")
+    assert scene.objects == ["floor", "a"]
+    rays = np.vstack([np.eye(3), -np.eye(3)])
+    hits = scene.intersect([0.5, 0.5, 0.5], rays)
+    assert hits.distance == pytest.approx(np.full(6, 0.5)) and (hits.crossing == 2).all()  # closed: all six faces are there
+
+
+def test_solids_of_an_stl_are_objects(tmp_path: Path) -> None:
+    (tmp_path / "a.stl").write_bytes(stl_text(b"one") + stl_text(b"none\nendsolid none\nsolid tw\xf6").replace(b"vertex 1", b"vertex 3"))
+    assert cistula.Scene.load(brought(tmp_path, "a.stl")).objects == ["floor", "one", "tw\xf6"]
+
+
+@pytest.mark.parametrize("data,message", [
+    (b"", "has 0 bytes"), (b"solid", "no triangles"), (b"solid advice\nis rare\n", "no triangles"), (stl_binary(count=13), "the 13 triangles"),
+    (stl_binary(count=0), "the 0 triangles"), (stl_binary(count=11), "the 11 triangles"), (stl_binary(count=2**32 - 1), "the 4294967295 triangles"),
+    (stl_binary(b"solid a")[:-1], "it is cut off"), (stl_binary()[:84], "it is cut off"), (stl_binary(count=0)[:84], "no triangles"), (stl_binary()[:40], "has 40 bytes"),
+    (stl_text()[:stl_text().rindex(b"endloop")], "cut off"), (stl_text().replace(b"vertex 1 1 0", b"vertex 1,0 1 0", 1), "found '1,0 1 0'"), (stl_text().replace(b"vertex 1 1 0", b"vertex 1_0 1 0", 1), "a.stl:"),
+    (stl_text().replace(b"vertex 1 1 0", b"vertex 1 1", 1), "expected three numbers"), (stl_text().replace(b"  vertex 1 1 0\n", b"", 1), "has 2 vertices"),
+    (stl_text().replace(b" endloop", b"  vertex 0 0 9\n endloop", 1), "a.stl:8: a loop has 4 vertices"), (stl_text().replace(b" endloop\n", b"", 1), "within another"),
+    (stl_text().replace(b" outer loop\n", b"", 1), "outside of a loop")])
+def test_stl_that_is_wrong_is_told_in_a_line(tmp_path: Path, data: bytes, message: str) -> None:
+    (tmp_path / "a.stl").write_bytes(data)
+    refused(tmp_path, 3, message, "a.stl")
+
+
+@pytest.mark.parametrize("size,message", [("1e38", "a scene takes sizes"), ("1e-38", "a scene takes sizes"), ("1e300", "a scene takes sizes"), ("1e-320", "a scene takes sizes"),
+                                          ("1e28", ""), ("1e-20", "")])
+def test_sizes_that_no_scene_has_are_told_in_a_line(tmp_path: Path, size: str, message: str) -> None:
+    (tmp_path / "a.obj").write_text("".join(f"v {x}{size[1:]} {y}{size[1:]} {z}{size[1:]}\n" for x, y, z in CUBE)
+                                    + "".join("f " + " ".join(str(i + 1) for i in f) + "\n" for f in FACES))
+    if message:
+        refused(tmp_path, 3, message, "a.obj")
+    else:
+        assert bring(tmp_path, "a.obj")[0] == 0

@@ -5,6 +5,7 @@ import json
 import os
 import pickle
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -53,6 +54,28 @@ def test_meshes_with_normals_are_smooth() -> None:
         with_keys(normals=CORNERS[:3])
     with pytest.raises(cistula.SceneError, match="at 12 of 12 corners"):
         with_keys(normals=-CORNERS)
+
+
+@pytest.mark.parametrize("kind", ["f4", "f8", "u1"])
+def test_a_buffer_that_is_used_again_changes_nothing_that_was_added(kind: str) -> None:
+    """Whatever its type: what is converted is a copy by itself, what is not is one, too."""
+    scene = {**SCENE, "materials": {"clay": {"texture": "t"}}, "objects": []}
+    texels = np.random.default_rng(5).integers(0, 256, (4, 4, 3)).astype(kind)
+    arrays: list[Any] = [CORNERS.astype("f8"), FACES.astype("u4"), np.array([[0, 0], [1, 0], [0, 1], [1, 1]], "f8"),
+                         CORNERS.astype("f8")]
+
+    def built(change: Callable[[Any], None]) -> str:
+        given, picture = [one.copy() for one in arrays], texels.copy()
+        b = cistula.SceneBuilder(scene).mesh("t", *given[:3], material="clay", normals=given[3])
+        b.texture("t", picture)
+        for one in (*given[:4], picture):
+            change(one)
+        return b.build().hash
+
+    def scribble(one: Any) -> None:
+        one[:] = 7 * one[:]
+        one[0] = 0
+    assert built(scribble) == built(lambda one: None)
 
 
 def test_textures_are_arrays() -> None:
@@ -112,6 +135,27 @@ def test_a_wrong_scene_is_told_by_its_pointer() -> None:
     with pytest.raises(cistula.SceneError) as error:
         cistula.SceneBuilder(SCENE).mesh("t", CORNERS, FACES, material="clya").build()
     assert error.value.pointer == "/objects/1/material"
+
+
+def test_several_threads_take_all_frames_of_a_film() -> None:
+    film, taken = cistula.Scene.from_dict(SCENE).film([0] * 40, size=(8, 6)), list[int]()
+    threads = [threading.Thread(target=lambda: taken.extend(image.frame for image in film)) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert taken == [0] * 40 and next(film, None) is None
+
+
+def test_a_zero_byte_in_a_name_cuts_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "scene.json"
+    file.write_text(json.dumps(SCENE))
+    image = cistula.Scene.load(os.fsencode(file)).render(size=(4, 3))  # type: ignore[arg-type]
+    for name, call in (("path", lambda: cistula.Scene.load(f"{file}\0.png")), ("folder", lambda: cistula.Scene.from_dict(SCENE, folder="a\0b")),
+                       ("a", lambda: cistula.compare(f"{file}\0.exr", image)), ("b", lambda: cistula.compare(image, f"{file}\0.exr"))):
+        with pytest.raises(cistula.ArgumentError, match=f"^{name}=.*a zero byte is in the name") as error:
+            call()
+        assert isinstance(error.value, ValueError) and error.value.argument == name
 
 
 def test_files_that_are_wrong(tmp_path: Path) -> None:

@@ -62,7 +62,8 @@ TEST_F(RenderProgram, TellsAFilmInJson) {
             EXPECT_GE(record.at("film_fraction"), fraction);
             fraction = record.at("film_fraction");
         }
-        EXPECT_EQ(records.front(), Json::parse(R"({"event": "begin", "frames": 3})"));
+        EXPECT_EQ(records.front(), Json::parse(R"({"event": "read", "files": []})"));
+        EXPECT_EQ(records[1], Json::parse(R"({"event": "begin", "frames": 3})"));
         EXPECT_EQ(records.back().at("event"), "end");
         EXPECT_EQ(written, (std::vector<std::string>{"f.0.exr", "f.1.exr", "f.2.exr"}));
         EXPECT_EQ(begun, (std::vector<int>{0, 1, 2}));
