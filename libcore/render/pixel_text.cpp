@@ -127,8 +127,7 @@ class TreeText {
                            met.face);
     }
     static const char* passes(const FaceMet& met) {
-        constexpr const char* verbs[] = {"enters", "leaves", "passes"};
-        return verbs[static_cast<size_t>(met.crossing)];
+        return met.crossing == CrossingKind::sheet ? "passes" : name_of(met.crossing);
     }
     static const char* side(const FaceMet& met) {
         constexpr const char* sides[] = {"", ", from outside", ", from inside"};

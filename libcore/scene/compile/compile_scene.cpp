@@ -119,7 +119,7 @@ class Compiler {
         find_convex_incidents(lights_, bodies_, incident_reach(), light_faces_);
         find_disk_incidents(lights_, bodies_, scene_.solids, incident_reach(), light_faces_);
         for (uint32_t i = 0; i < source_.solids.size(); ++i) {
-            scene_.solid_names.push_back(source_.solids[i].name);
+            scene_.solid_names.push_back(name_of(source_.solids[i]));
             scene_.solids[i].material = source_.solids[i].material;
         }
         compile_meshes();
@@ -430,8 +430,8 @@ class Compiler {
         const SourceSolid& from = source_.solids[number];
         const auto warn_of = [&](uint32_t sides, const char* what) {
             if (sides > 0 && from.closed)
-                scene_.warnings.push_back(from.place + ": " + from.name + ": the mesh " + what + std::to_string(sides) +
-                                          " sides of triangles; rays may leak there");
+                scene_.warnings.push_back(from.place + ": " + name_of(from) + ": the mesh " + what +
+                                          std::to_string(sides) + " sides of triangles; rays may leak there");
         };
         warn_of(prepared.faults.crossed, "passes through itself at ");
         warn_of(prepared.faults.unchecked, "is too crowded to be checked at ");

@@ -20,7 +20,7 @@ void add_light(SceneNames& names, const std::string& name, const std::string& pl
 SceneNames name_scene(const SceneSource& source) {
     const SceneDescription& description = *source.description;
     SceneNames names;
-    for (const SourceSolid& solid : source.solids) names.solids.push_back({solid.name, solid.place});
+    for (const SourceSolid& solid : source.solids) names.solids.push_back({name_of(solid), solid.place});
     for (const MaterialDescription& material : source.materials) names.materials.push_back({material.name, ""});
     // Lights in the order of normalize_lights.
     for (size_t i = 0; i < description.lights.size(); ++i) {
@@ -33,7 +33,7 @@ SceneNames name_scene(const SceneSource& source) {
         const size_t edges = polyhedron_of(*solid.polyhedron).edges.size();
         for (size_t edge = 0; edge < edges; ++edge)
             for (int i = 0; i < on_edges.count; ++i)
-                add_light(names, solid.name + " edge " + std::to_string(edge) + " light " + std::to_string(i),
+                add_light(names, name_of(solid) + " edge " + std::to_string(edge) + " light " + std::to_string(i),
                           solid.place, on_edges.color, on_edges.shown());
     }
     return names;

@@ -207,6 +207,19 @@ TEST(SceneNames, NameWhatIsCompiled) {
     }
 }
 
+TEST(SceneNames, NamelessObjectsAreNumbered) {
+    const SceneDescription scene = read_scene_text(R"({"materials": {"m": {}}, "objects": [
+        {"solid": "cube", "material": "m", "edge_lights": {"count": 1, "radius": 0.01}},
+        {"solid": "sphere", "center": [9, 0, 0], "material": "m", "name": "moon"}]})",
+                                                   "a.json", "");
+    const SceneNames names = name_scene(gather_scene(scene));
+    ASSERT_EQ(names.solids.size(), 2u);
+    EXPECT_EQ(names.solids[0].name, "object0");
+    EXPECT_EQ(names.solids[1].name, "moon");
+    EXPECT_EQ(names.lights.at(11).name, "object0 edge 11 light 0");
+    EXPECT_EQ(names.visible_lights.at(0).name, "object0 edge 0 light 0");
+}
+
 class PixelReports : public RenderProgram {
   protected:
     json report(Arguments arguments) const {
@@ -329,6 +342,44 @@ TEST_F(PixelReports, WriteFilesAndStandardInput) {
     EXPECT_EQ(input.code, 0) << input.error;
     EXPECT_EQ(input.out.substr(input.out.find('\n')), both.out.substr(both.out.find('\n')));
     EXPECT_FALSE(exists("s.exr"));
+}
+
+TEST_F(PixelReports, FacesArePassedEnteredAndLeft) {
+    const auto scene = [&](double y) {
+        put_bytes(file("way.json"), fmt::format(R"({{"film": {{"width": 9, "height": 9}},
+            "camera": {{"position": [0, {}, 0], "target": [0, 9, 0]}},
+            "materials": {{"clear": {{"transmission": 1, "color": 0}}, "m": {{}}}},
+            "objects": [{{"solid": "sphere", "material": "clear"}},
+                {{"disk": {{"center": [0, 2, 0], "normal": [0, 1, 0]}}, "material": "clear"}},
+                {{"solid": "cube", "center": [0, 4, 0], "material": "clear"}},
+                {{"solid": "sphere", "center": [0, 9, 0], "material": "m"}}],
+            "lights": [{{"position": [0, 20, 0]}}, {{"position": [0, 8.2, 4]}}]}})",
+                                                y));
+        return run({"way.json", "--pixel", "4,4"}).out;
+    };
+    const auto expect_in_order = [](const std::string& text, const std::vector<std::string>& parts) {
+        size_t at = 0;
+        for (const std::string& part : parts) {
+            at = text.find(part, at);
+            ASSERT_NE(at, std::string::npos) << part << "\n" << text;
+        }
+    };
+    const std::vector<std::string> rest = {"leaves object0 (/objects/0), distance",
+                                           "passes object1 (/objects/1), distance", "enters object2 (/objects/2), face",
+                                           "leaves object2 (/objects/2), face",
+                                           "meets object3 (/objects/3), from outside, at (0, 8, 0)"};
+    std::vector<std::string> all = {"enters object0 (/objects/0), distance 4"};
+    all.insert(all.end(), rest.begin(), rest.end());
+    expect_in_order(scene(-5), all);
+    const std::string inside = scene(-0.5);
+    expect_in_order(inside, rest);
+    EXPECT_EQ(inside.find("enters object0"), std::string::npos) << inside;
+    const json tree = report({"way.json", "--pixel", "4,4"});
+    std::vector<json> crossings;
+    for (const json& face : tree["samples"][0]["tree"]["passed"])
+        crossings.push_back({face["object"]["name"], face["crossing"]});
+    EXPECT_EQ(json(crossings),
+              json::array({{"object0", "leaves"}, {"object1", "sheet"}, {"object2", "enters"}, {"object2", "leaves"}}));
 }
 
 TEST_F(PixelReports, ShowTheIdOfALight) {
