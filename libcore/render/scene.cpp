@@ -1,5 +1,7 @@
 #include "render/scene.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <mutex>
 
@@ -38,6 +40,10 @@ class SceneFrames {
     std::map<int, std::string> hashes_;
 };
 
+std::string in_frame(int frame, const std::string& message) {
+    return fmt::format("frame {}: {}", frame, message);
+}
+
 Scene::Scene(SceneSource source, const std::optional<Precision>& wanted) {
     PrecisionChoice choice = choose_precision(wanted, smallest_part(source));
     *this = Scene(std::move(source), std::move(choice));
@@ -58,6 +64,8 @@ Scene::Scene(SceneSource source, PrecisionChoice choice)
     const auto frames = std::make_shared<SceneFrames>(moving, choice_.precision);
     frames->put(*this);
     frames_ = frames;
+    for (std::string& warning : warnings_)
+        if (warning != choice_.warning) warning = in_frame(shown_, warning);
 }
 
 Scene Scene::at(int frame, StopSignal stop) const {

@@ -39,7 +39,8 @@ class Scene {
     Precision precision() const { return choice_.precision; }
     /// Why the precision is double where none was wanted; empty: nothing to say.
     const std::string& precision_note() const { return choice_.note; }
-    /// Degenerate triangles left out, open meshes taken as sheets, a precision that is too small, ...
+    /// Degenerate triangles left out, open meshes taken as sheets, a precision that is too small, ... What is said of
+    /// one frame alone names it.
     const std::vector<std::string>& warnings() const { return warnings_; }
     const SceneNames& names() const { return names_; }
 
@@ -72,5 +73,8 @@ class Scene {
     std::vector<std::string> warnings_;
     std::variant<std::shared_ptr<const CompiledScene<float>>, std::shared_ptr<const CompiledScene<double>>> compiled_;
 };
+
+/// The message as one on a frame of a scene that changes.
+std::string in_frame(int frame, const std::string& message);
 
 }  // namespace cistula

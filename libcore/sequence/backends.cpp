@@ -216,9 +216,13 @@ class MovingRenderer : public Renderer {
         const Scene scene = scene_.at(frame, stop);  // may throw: the renderer of the frame before then stays
         renderer_.reset();
         notes_.clear();
+        const auto is_said = [&](const std::string& warning) {
+            const std::vector<std::string>& said = scene_.warnings();
+            return std::find(said.begin(), said.end(), warning) != said.end();
+        };
         for (const std::string& warning : scene.warnings())
-            if (std::find(scene_.warnings().begin(), scene_.warnings().end(), warning) == scene_.warnings().end())
-                notes_.push_back(fmt::format("frame {}: {}", frame, warning));
+            if (!is_said(warning) && !is_said(in_frame(scene_.shown(), warning)))
+                notes_.push_back(in_frame(frame, warning));
         renderer_ = make_still_renderer(backend_, scene, options_);
         shown_ = frame;
     }

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 #include "base/stages.h"
@@ -429,6 +430,26 @@ TEST_F(RenderProgram, AFilmOverTheZenithSaysWhereItTurns) {
     const auto id_at = [&](size_t x, size_t y) { return channel(down, "id")[y * 32 + x]; };
     EXPECT_EQ((std::vector{id_at(21, 4), id_at(21, 15), id_at(10, 15), id_at(10, 4)}),
               (std::vector<float>{1, 2, 3, 4}));
+}
+
+TEST_F(RenderProgram, WhatAFilmSaysOfAFrameNamesIt) {
+    put_bytes(file("dark.json"), R"({"film": {"width": 8, "height": 6}, "camera": {"position": [0, -5, 0]},
+        "materials": {"m": {}}, "objects": [{"solid": "cube", "material": "m"}], "background": {"stops": [[0, 1]]}, "ambient": 0,
+        "lights": [{"position": [0, -9, 9], "color": {"keys": [[0, 1], [2, 0], [3, 0], [4, 1]]}}]})");
+    const std::string said =
+        "dark.json: /background: it is seen, mirrored and refracted, but lights nothing; `ambient` "
+        "and lights do\n";
+    const auto lines = [&](const char* frames) {
+        const ProgramResult result = run({"dark.json", "--progress", "none", "--frames", frames, "-o", "d.#.exr"});
+        EXPECT_EQ(result.code, 0) << result.error;
+        std::string found, line;
+        for (std::istringstream text(result.error); std::getline(text, line);)
+            if (line.find("lights nothing") != std::string::npos) found += line + "\n";
+        return found;
+    };
+    EXPECT_EQ(lines("0-1"), "");
+    EXPECT_EQ(lines("0-4"), "render: frame 2: " + said + "render: frame 3: " + said);
+    EXPECT_EQ(lines("2-4"), "render: warning: frame 2: " + said) << "what the first frame said";
 }
 
 TEST_F(RenderProgram, TheHeaderSaysWhatTheImageDependsOn) {
