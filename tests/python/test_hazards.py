@@ -140,3 +140,17 @@ def test_importing_starts_nothing() -> None:
     code = "import os, cistula; print(len(os.listdir('/proc/self/task')))"
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment).stdout == "1\n"
+
+
+def test_a_subinterpreter_is_refused() -> None:
+    code = """try: import _interpreters as interpreters
+except ImportError: import _xxsubinterpreters as interpreters
+made = interpreters.create()
+said = interpreters.run_string(made, '''try: import cistula
+except ImportError as error: print(error, flush=True)''')
+assert said is None, said
+import cistula
+cistula.Scene.load('scenes/platonic.json').render(size=(32, 18))
+print('works')"""
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=SOURCE, timeout=60)
+    assert process.stdout == "cistula: this is a subinterpreter; import it in the main interpreter, or in processes of their own\nworks\n"
