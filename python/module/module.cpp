@@ -30,9 +30,13 @@ void translate(const std::exception_ptr& failure, void*) {
         std::rethrow_exception(failure);
     } catch (const Error& error) {
         const Error told = error.named(argument_name);
-        const nb::object made = nb::module_::import_("cistula.errors")
-                                    .attr("of_library")(told.what(), kinds[static_cast<size_t>(told.kind())],
-                                                        argument_name(told.subject()), told.place(), told.remedy());
+        const auto text = [](const std::string& of) {  // names of files need not be UTF-8
+            return nb::steal(PyUnicode_DecodeFSDefaultAndSize(of.data(), static_cast<Py_ssize_t>(of.size())));
+        };
+        const nb::object made =
+            nb::module_::import_("cistula.errors")
+                .attr("of_library")(text(told.what()), kinds[static_cast<size_t>(told.kind())],
+                                    argument_name(told.subject()), text(told.place()), told.remedy());
         PyErr_SetObject(made.type().ptr(), made.ptr());
     }
 }
