@@ -87,7 +87,7 @@ std::string named(const nb::object& given, const char* suffix) {
 void save(Image& image, const nb::object& given) {
     const std::string path = named(given, ".exr");
     {
-        const nb::gil_scoped_release free;
+        const WithoutGil free;
         image.clamped = 0;
         write_exr(path, image.picture);
     }
@@ -278,7 +278,7 @@ void bind_image(nb::module_& m) {
             "preview",
             [](const Image& image, const nb::object& given, double exposure, const std::string& view, double bloom) {
                 const std::string path = named(given, ".png");
-                const nb::gil_scoped_release free;
+                const WithoutGil free;
                 write_file_atomically(path, png_of(image, {{"exposure", fmt::format("{}", exposure)},
                                                            {"view", view},
                                                            {"bloom", fmt::format("{}", bloom)}}));
