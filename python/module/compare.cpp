@@ -48,7 +48,7 @@ Judged compare(const Side& a, const Side& b, std::optional<double> fail, double 
             throw Error(ErrorKind::usage, fmt::format("`{}`={}: must be a number from 0 to {}", name, *value, high));
     if (failpercent > 0 && !fail)
         throw Error(ErrorKind::usage, fmt::format("`failpercent`={}: is for `fail`", failpercent));
-    const nb::gil_scoped_release free;
+    const WithoutGil free;
     StoredReader reader;
     Selection selection;
     selection.layers = std::move(layers);

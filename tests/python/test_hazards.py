@@ -150,3 +150,53 @@ def test_importing_starts_nothing() -> None:
     code = "import os, cistula; print(len(os.listdir('/proc/self/task')))"
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment).stdout == "1\n"
+
+
+WORKS = ["scene.render(size=(96, 54))", "scene.render(size=(7680, 4320), depth=64)", "list(scene.film([0, 1], size=(320, 180)))",
+         "cistula.Scene.load('scenes/hard/nested-shells.json')", "cistula.compare(image, image)", "image.save(FOLDER + '/a.exr')",
+         "scene.intersect([0, 0, 9], np.full((9999, 3), -1.0))", "cistula.verify(quick=True)",
+         "scene.render(size=(960, 540), progress=lambda share: scene.render(size=(320, 180)))"]
+
+
+def ended(work: str, folder: Path, end: str = "", before: str = "", threads: int = 2) -> tuple[int, str, str]:
+    """Exit code and words of a process whose Python ends while daemon threads work."""
+    code = f"""import atexit, os, threading, time, numpy as np
+FOLDER = {str(folder)!r}
+{before}
+import cistula
+scene = cistula.Scene.load('scenes/glass.json')
+image = scene.render(size=(320, 180))
+def work():
+    while True: {work}
+for i in range({threads}): threading.Thread(target=work, daemon=True).start()
+time.sleep(0.3)
+{end}
+print('ends', flush=True)"""
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=SOURCE, timeout=120)
+    return process.returncode, process.stdout, process.stderr
+
+
+@pytest.mark.parametrize("work", WORKS)
+def test_python_ends_while_daemon_threads_work(work: str, tmp_path: Path) -> None:
+    assert ended(work, tmp_path) == (0, "ends\n", "")
+
+
+def test_what_ends_after_it_still_works_and_so_does_a_forked_process(tmp_path: Path) -> None:
+    late = "def late(): print(cistula.Scene.load('scenes/platonic.json').render(size=(32, 18)).hash != image.hash)\natexit.register(late)"
+    assert ended(WORKS[0], tmp_path, before=late) == (0, "ends\nTrue\n", "")
+    fork = "pid = os.fork()\nif pid: assert os.waitpid(pid, 0)[1] == 0"
+    assert ended(WORKS[1], tmp_path, fork) == (0, "ends\nends\n", "")
+
+
+def test_a_subinterpreter_is_refused() -> None:
+    code = """try: import _interpreters as interpreters
+except ImportError: import _xxsubinterpreters as interpreters
+made = interpreters.create()
+said = interpreters.run_string(made, '''try: import cistula
+except ImportError as error: print(error, flush=True)''')
+assert said is None, said
+import cistula
+cistula.Scene.load('scenes/platonic.json').render(size=(32, 18))
+print('works')"""
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=SOURCE, timeout=60)
+    assert process.stdout == "cistula: this is a subinterpreter; import it in the main interpreter, or in processes of their own\nworks\n"
