@@ -104,7 +104,9 @@ def test_frame_lists() -> None:
 
 def test_names(tmp_path: Path) -> None:
     assert folder_and_name("a/b/f.##.exr") == ("a/b", "f.##.exr")
-    assert folder_and_name("a/####/f.exr") == ("a", "####/f.exr")
+    assert folder_and_name("a/####/f.exr") == ("a/####", "f.exr")
+    assert folder_and_name("sh#t/f.#.exr") == ("sh#t", "f.#.exr")
+    assert folder_and_name("#/%d/f.exr") == ("#", "%d/f.exr")
     assert folder_and_name("%04d/f.exr") == (".", "%04d/f.exr")
     assert folder_and_name("/f.exr") == ("/", "f.exr")
     names = ["f.00.exr", "f.diffuse.00.exr", "f.01.exr", "f.100.exr", "f.tile07.00.exr", "f.snapshot.00.exr", "g.00.exr", "f.exr", "f.x.exr"]
@@ -115,7 +117,7 @@ def test_names(tmp_path: Path) -> None:
     assert [file.name for file in images_of(f"{tmp_path}/g.%d.exr", [0])[1]] == ["g.00.exr"]
     (tmp_path / "0003").mkdir()
     (tmp_path / "0003/f.exr").touch()
-    assert images_of(f"{tmp_path}/####/f.exr", [3])[1] == [tmp_path / "0003/f.exr"]
+    assert images_of(f"{tmp_path}/%04d/f.exr", [3])[1] == [tmp_path / "0003/f.exr"]
 
 
 def test_tasks_take_about_as_long_as_they_shall(film: Farm) -> None:
