@@ -121,8 +121,8 @@ TEST(Keys, FaultsHaveTheirPlace) {
                  "a.json: /materials/m/index/keys/1/1: expected a number from 0.01 to 100, found 1000");
     EXPECT_WRONG(
         scene_with(R"("depth": {"keys": [[0, 1], [4, 2]]})"),
-        "a.json: /depth: expected a whole number from 1 to 1024, found an object; keys are for numbers, points "
-        "and colors of the camera, lights, objects, materials and what is around");
+        "a.json: /depth: expected a whole number from 1 to 1024, found an object; keys are for numbers, points, "
+        "planes and colors of the camera, lights, objects, materials and what is around");
     EXPECT_WRONG(at_frame(scene_with(R"("materials": {"m": {"transmission": 0.5,
                      "reflection": {"keys": [[0, 0], [4, 1]]}}})"),
                           3),

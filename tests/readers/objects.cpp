@@ -85,6 +85,37 @@ TEST(ScenePlanes, ChangeNumberByNumber) {
     EXPECT_EQ(std::get<DiskObject>(later.objects[1].shape).radius, 1.5);
 }
 
+TEST(ScenePlanes, ChangeAsAWhole) {
+    const SceneDescription scene = read_objects(
+        R"({"plane": {"keys": [[0, [0, 0, 1, 2]], [4, [0, 4, 1, 6]], [8, [0, 4, 1, -2]]]}, "material": "glass"},
+           {"solid": "convex", "material": "glass", "planes": [[1, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1],
+                [0, 0, 1, 1], {"keys": [[0, [0, 0, -1, 1]], [2, [0, 0, -1, 3]]], "interpolation": "step"}]})");
+    ASSERT_TRUE(scene.motion);
+    EXPECT_EQ(scene.motion->objects, (std::vector<size_t>{0, 1}));
+    EXPECT_EQ(scene.motion->frames, (std::vector{0, 2, 4, 8}));
+    const auto plane = [&](int frame) { return std::get<DiskObject>(at_frame(scene, frame).objects[0].shape); };
+    EXPECT_EQ(plane(0).normal, glm::dvec3(0, 0, 1));
+    EXPECT_EQ(plane(0).center, glm::dvec3(0, 0, 2));
+    EXPECT_EQ(plane(1).normal, glm::dvec3(0, 1, 1));
+    EXPECT_NEAR(length(plane(1).center - glm::dvec3(0, 1.5, 1.5)), 0, 1e-15);
+    EXPECT_EQ(plane(9).normal, glm::dvec3(0, 4, 1));
+    EXPECT_NEAR(dot(plane(9).center, plane(9).normal), -2, 1e-15);
+    const auto lowest = [&](int frame) {
+        double z = 0;
+        for (const glm::dvec3& vertex : std::get<SolidObject>(at_frame(scene, frame).objects[1].shape).body->vertices)
+            z = std::min(z, vertex.z);
+        return z;
+    };
+    EXPECT_EQ(lowest(1), -1);
+    EXPECT_EQ(lowest(2), -3);
+    EXPECT_WRONG_OBJECT(R"({"plane": {"keys": [[0, [0, 0, 1]]]}, "material": "glass"})",
+                        "/plane/keys/0/1: expected a plane [nx, ny, nz, d], found an array of 3");
+    EXPECT_WRONG_OBJECT(R"({"plane": {"keys": [[0, [0, 0, 1, 1e31]]]}, "material": "glass"})",
+                        "/plane/keys/0/1/3: expected a number from -1e30 to 1e30, found 1e31");
+    EXPECT_WRONG_OBJECT(R"({"plane": {"keys": [[0, [0, 0, 0, 1]]]}, "material": "glass"})",
+                        "/plane: the normal is 0; give the direction across the plane");
+}
+
 TEST(SceneSolids, EveryKeyArrives) {
     const ObjectDescription object =
         read_objects(R"({"name": "gem", "solid": "icosahedron", "center": [1, 2, 3], "radius": 4,

@@ -114,8 +114,17 @@ TEST(Sky, TransparentPicturesLeaveOutWhatIsSeenOfIt) {
     }
 }
 
-TEST(Sky, SaysOnceThatItLightsNothing) {
-    const Scene scene(json_scene(cube_under_sky));
+TEST(Sky, SaysOnceThatItLightsNothingWhereNothingElseDoes) {
+    const auto lit_by = [](const std::string& lights) {
+        SceneDescription description = json_scene(R"({"materials": {"m": {}}, "objects": [{"solid": "cube",
+            "material": "m", "edge_lights": {"count": 1, "radius": 0.01, "color": 0}}], "background": {"stops": [[0, 1]]})" +
+                                                  lights + "}");
+        return Scene(description);
+    };
+    for (const char* lights : {"", R"(, "ambient": [0, 0, 0.1])",
+                               R"(, "ambient": 0, "lights": [{"position": [0, 0, 9], "color": [0, 1, 0]}])"})
+        EXPECT_TRUE(lit_by(lights).warnings().empty()) << lights;
+    const Scene scene = lit_by(R"(, "ambient": 0, "lights": [{"position": [0, 0, 9], "color": 0, "radius": 0.1}])");
     ASSERT_EQ(scene.warnings().size(), 1u);
     EXPECT_EQ(scene.warnings()[0],
               "a.json: /background: it is seen, mirrored and refracted, but lights nothing; `ambient` "

@@ -554,6 +554,8 @@ class Compiler {
         for (const dvec3& axis : to.axes) hash_.add(axis);
         hash_.add(to.scale);
         for (const SkyStop& stop : scene_.sky_stops) hash_.add(stop.cosine), hash_.add(stop.color);
+        const auto lights = [](const NormalizedLight& light) { return light.lights(); };
+        if (description_.ambient != dvec3(0) || std::any_of(lights_.begin(), lights_.end(), lights)) return;
         scene_.warnings.push_back(scene_error(description_, "/background",
                                               "it is seen, mirrored and refracted, but lights nothing",
                                               "`ambient` and lights do")

@@ -43,27 +43,27 @@ enum class Interpolation { linear, step, smooth };
 
 /// A value that changes over time.
 struct KeyedValue {
-    std::vector<double> frames;  // ascending
-    std::vector<glm::dvec3> values;
+    std::vector<double> frames;      // ascending
+    std::vector<glm::dvec4> values;  // of which a point or color has three, a number one
 
     /// Change per frame at a key: between its neighbors, at the ends to the only one.
-    glm::dvec3 tangent(size_t i) const {
+    glm::dvec4 tangent(size_t i) const {
         const size_t before = i == 0 ? 0 : i - 1;
         const size_t after = std::min(i + 1, frames.size() - 1);
         return (values[after] - values[before]) / (frames[after] - frames[before]);
     }
 
-    glm::dvec3 at(double frame, Interpolation interpolation) const {
+    glm::dvec4 at(double frame, Interpolation interpolation) const {
         const auto next = static_cast<size_t>(std::upper_bound(frames.begin(), frames.end(), frame) - frames.begin());
         if (next == 0) return values.front();
         const size_t i = next - 1;
         if (next == frames.size() || frame == frames[i] || interpolation == Interpolation::step) return values[i];
         const double length = frames[next] - frames[i];
         const double s = (frame - frames[i]) / length;
-        const glm::dvec3 way = values[next] - values[i];
+        const glm::dvec4 way = values[next] - values[i];
         if (interpolation == Interpolation::linear) return values[i] + s * way;
-        const glm::dvec3 leave = length * tangent(i);
-        const glm::dvec3 arrive = length * tangent(next);
+        const glm::dvec4 leave = length * tangent(i);
+        const glm::dvec4 arrive = length * tangent(next);
         return values[i] + s * (leave + s * (3.0 * way - 2.0 * leave - arrive + s * (leave + arrive - 2.0 * way)));
     }
 };
@@ -125,9 +125,9 @@ void JsonValue::fail(const Error& error) const {
 
 void JsonValue::fail_expected(const std::string& expected) const {
     fail(fmt::format("expected {}, found {}", expected, found_text(*json_)),
-         json_->is_object() && json_->contains("keys")
-             ? "keys are for numbers, points and colors of the camera, lights, objects, materials and what is around"
-             : "");
+         json_->is_object() && json_->contains("keys") ? "keys are for numbers, points, planes and colors of the "
+                                                         "camera, lights, objects, materials and what is around"
+                                                       : "");
 }
 
 size_t JsonValue::array_size(size_t least, const std::string& expected) const {
@@ -136,7 +136,7 @@ size_t JsonValue::array_size(size_t least, const std::string& expected) const {
 }
 
 template <class Read>
-glm::dvec3 JsonValue::keyed(const Key& key, const Read& read) const {
+glm::dvec4 JsonValue::keyed(const Key& key, const Read& read) const {
     static constexpr Key frame_key{"frame", KeyType::number, {-1e6, 1e6}, {}, false, {}};
     JsonObject object(*this, keyed_keys);
     const JsonValue list = object.at("keys");
@@ -157,14 +157,14 @@ glm::dvec3 JsonValue::keyed(const Key& key, const Read& read) const {
         keyed.values.push_back(read(JsonValue(value.json(), *source_, value.place()), key));
     }
     clock_->keys.insert(clock_->keys.end(), keyed.frames.begin(), keyed.frames.end());
-    glm::dvec3 value = keyed.at(clock_->frame, interpolation);
-    for (int c = 0; c < 3; ++c) value[c] = held_in(key.range, value[c]);
+    glm::dvec4 value = keyed.at(clock_->frame, interpolation);
+    for (int c = 0; c < 4; ++c) value[c] = held_in(key.range, value[c]);
     return value;
 }
 
 double JsonValue::number(const Key& key) const {
     if (is_keyed())
-        return keyed(key, [](const JsonValue& value, const Key& k) { return glm::dvec3{value.number(k)}; }).x;
+        return keyed(key, [](const JsonValue& value, const Key& k) { return glm::dvec4{value.number(k)}; }).x;
     double value = 0;
     if (number_from(*json_, key.range, value)) return value;
     fail_expected("a number " + std::string(key.range.above ? "" : "from ") + range_text(key.range));
@@ -196,15 +196,26 @@ int JsonValue::choice(const Key& key) const {
 }
 
 glm::dvec3 JsonValue::color(const Key& key) const {
-    if (is_keyed()) return keyed(key, [](const JsonValue& value, const Key& k) { return value.color(k); });
+    if (is_keyed())
+        return keyed(key, [](const JsonValue& value, const Key& k) { return glm::dvec4(value.color(k), 0); });
     double gray = 0;
     if (number_from(*json_, key.range, gray)) return glm::dvec3{gray};
     return numbers_of<3>(*this, key);
 }
 
 glm::dvec3 JsonValue::point(const Key& key) const {
-    if (is_keyed()) return keyed(key, [](const JsonValue& value, const Key& k) { return value.point(k); });
+    if (is_keyed())
+        return keyed(key, [](const JsonValue& value, const Key& k) { return glm::dvec4(value.point(k), 0); });
     return numbers_of<3>(*this, key);
+}
+
+glm::dvec4 JsonValue::plane(const Key& key) const {
+    if (is_keyed()) return keyed(key, [](const JsonValue& value, const Key& k) { return value.plane(k); });
+    const std::string expected = "a plane [nx, ny, nz, d]";
+    if (array_size(4, expected) != 4) fail_expected(expected);
+    glm::dvec4 numbers;
+    for (int k = 0; k < 4; ++k) numbers[k] = item(static_cast<size_t>(k)).number(key);
+    return numbers;
 }
 
 glm::dvec2 JsonValue::pair(const Key& key) const {

@@ -9,6 +9,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -74,8 +75,8 @@ class JsonValue {
     /// Length of an array, which must be `least` or more; `expected` is for the message.
     size_t array_size(size_t least, const std::string& expected) const;
 
-    /// The value as the type that a table asks for; `key` gives range and choices. A number, a color or a point with
-    /// keys is that of the clock's frame.
+    /// The value as the type that a table asks for; `key` gives range and choices. A number, a color, a point
+    /// or a plane [nx, ny, nz, d] with keys is that of the clock's frame.
     double number(const Key& key) const;
     int64_t whole(const Key& key) const;
     bool boolean(const Key& key) const;
@@ -83,12 +84,13 @@ class JsonValue {
     int choice(const Key& key) const;  // index into key.choices
     glm::dvec3 color(const Key& key) const;
     glm::dvec3 point(const Key& key) const;
+    glm::dvec4 plane(const Key& key) const;
     glm::dvec2 pair(const Key& key) const;
 
   private:
     /// The value with keys at the clock's frame; read(value, key) reads that of a key.
     template <class Read>
-    glm::dvec3 keyed(const Key& key, const Read& read) const;
+    glm::dvec4 keyed(const Key& key, const Read& read) const;
 
     const Json* json_;
     const std::string* source_;

@@ -68,13 +68,10 @@ std::shared_ptr<const Polyhedron> made_of(const JsonValue& value, const Make& ma
 
 /// The plane [nx, ny, nz, d]; `purpose`: what its normal is for.
 BodyPlane read_plane_numbers(const JsonValue& value, const char* purpose) {
-    const std::string expected = "a plane [nx, ny, nz, d]";
-    if (value.array_size(4, expected) != 4) value.fail_expected(expected);
-    double numbers[4];
-    for (size_t k = 0; k < 4; ++k) numbers[k] = value.item(k).number({"planes", KeyType::number, vertex_key().range});
-    const glm::dvec3 normal(numbers[0], numbers[1], numbers[2]);
+    const glm::dvec4 numbers = value.plane({"planes", KeyType::number, vertex_key().range});
+    const glm::dvec3 normal(numbers);
     if (normal == glm::dvec3(0)) value.fail("the normal is 0", purpose);
-    return {normal, numbers[3]};
+    return {normal, numbers.w};
 }
 
 std::shared_ptr<const Polyhedron> read_planes(const JsonValue& value) {
