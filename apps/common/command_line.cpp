@@ -27,9 +27,9 @@ constexpr std::pair<std::string_view, std::string_view> other_names[] = {
     {"resolution", "--res"}, {"quiet", "-q,--quiet"},   {"verbose", "-v,--verbose"}};
 
 /// Settings that messages of the library name and that are no keys of a request.
-constexpr std::string_view other_settings[] = {"failflip", "failssim",     "jobs",           "run_commands",
-                                               "fail",     "hardfail",     "mask",           "filter",
-                                               "update",   "list_devices", "print_template", "explore_mb"};
+constexpr std::string_view other_settings[] = {
+    "failflip", "failssim", "jobs",         "run_commands",   "fail",       "hardfail",       "mask",
+    "filter",   "update",   "list_devices", "print_template", "explore_mb", "allow_nonfinite"};
 
 std::vector<std::string> long_names(const CLI::App& app) {
     std::vector<std::string> names;

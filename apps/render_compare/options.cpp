@@ -56,6 +56,8 @@ void declare(CLI::App& app, CompareOptions& options, std::string& sums) {
                read_number(thresholds.flip, 0, 1, "a number from 0 to 1"));
     add_option(app, "--failssim", "S", "SSIM of no channel may be less than S",
                read_number(thresholds.ssim, -1, 1, "a number from -1 to 1"));
+    app.add_flag("--allow-nonfinite", thresholds.allow_nonfinite,
+                 "with a threshold: NaN and infinities that both have in the same places pass");
     add_option(app, "--layers", "LIST", "only channels and layers of these names, with * and ?; e.g. R,G,B,diffuse.*",
                read_by(selection.layers, parse_patterns));
     app.add_flag("--intersection", selection.intersection, "only pixels that both data windows have");
@@ -81,6 +83,8 @@ void check_images(const CompareOptions& options) {
     if (options.a.empty() || options.b.empty())
         fail_usage(fmt::format("{}; render-compare A.exr B.exr; --help tells more",
                                options.a.empty() ? "no images are given" : "only one image is given"));
+    if (options.thresholds.allow_nonfinite && !options.thresholds.any())
+        fail_usage("--allow-nonfinite: is for thresholds; without one every bit counts; add --fail E");
     if (names_several(options.a) != names_several(options.b))
         fail_usage(fmt::format("{} and {}: one of them is several images; give two folders, or two sequences",
                                options.a, options.b));
@@ -100,8 +104,8 @@ void check_images(const CompareOptions& options) {
 void check_sums(const CLI::App& app, const CompareOptions& options) {
     constexpr const char* why = "--sums looks at one image by itself; leave it out";
     if (!options.a.empty()) fail_usage(fmt::format("{}: {}", options.a, why));
-    for (const char* option : {"--fail", "--failpercent", "--hardfail", "--failflip", "--failssim", "--layers",
-                               "--intersection", "--crop", "--mask", "--metrics", "--diff", "--json"})
+    for (const char* option : {"--fail", "--failpercent", "--hardfail", "--failflip", "--failssim", "--allow-nonfinite",
+                               "--layers", "--intersection", "--crop", "--mask", "--metrics", "--diff", "--json"})
         if (app.count(option) > 0) fail_usage(fmt::format("{}: {}", option, why));
 }
 

@@ -29,6 +29,8 @@
 namespace cistula {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// Two images that are compared, in the way of the options.
 struct Judged {
     bool holds = false;
@@ -61,35 +63,53 @@ Judged judge_files(const CompareOptions& options, const std::string& first, cons
     return judged;
 }
 
-/// The images of a folder by their names, those of a sequence by their numbers.
-std::map<std::string, std::string> images_of(const std::string& text) {
-    namespace fs = std::filesystem;
+/// Images by what pairs them.
+using Images = std::map<std::string, std::string>;
+
+/// Adds the images of a folder and of those in it, by their names after `before`. `around`: the folders that it is in.
+void add_images(const fs::path& folder, const std::string& before, std::set<fs::path>& around, Images& images) {
     constexpr std::string_view kinds[] = {".exr", ".png", ".tif", ".tiff", ".jpg", ".jpeg",
                                           ".hdr", ".tga", ".bmp", ".dpx",  ".webp"};
-    std::map<std::string, std::string> images;
-    const bool is_folder = fs::is_directory(text);
-    const OutputName name = is_folder ? OutputName() : OutputName(text, "the images");
-    const fs::path folder = is_folder ? fs::path(text) : fs::path(text).parent_path();
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
+    const auto [real, is_new] = around.insert(fs::canonical(folder));
+    if (!is_new) throw Error(ErrorKind::file, "leads back to a folder that it is in").at(folder.string());
+    for (const auto& entry : fs::directory_iterator(folder)) {
         const std::string own = entry.path().filename().string();
-        const std::string path = (folder / own).string();
-        if (is_folder) {
-            if (std::count(std::begin(kinds), std::end(kinds), lower_extension(own)) > 0) images[own] = path;
-            continue;
-        }
-        for (const int frame : numbers_in(own))
-            if (fs::path(name.for_frame(frame)).filename() == own) images[std::to_string(frame)] = path;
+        if (fs::is_directory(entry.path()))  // links are followed
+            add_images(entry.path(), before + own + '/', around, images);
+        else if (std::count(std::begin(kinds), std::end(kinds), lower_extension(own)) > 0)
+            images[before + own] = entry.path().string();
     }
-    if (error) throw file_error(folder.string(), "read", error.value());
+    around.erase(real);
+}
+
+/// The images of a folder by their paths in it, those of a sequence by their numbers.
+Images images_of(const std::string& text) {
+    Images images;
+    try {
+        if (fs::is_directory(text)) {
+            std::set<fs::path> around;
+            add_images(text, "", around, images);
+        } else {
+            const OutputName name(text, "the images");
+            const fs::path folder = fs::path(text).parent_path();
+            for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder)) {
+                const std::string own = entry.path().filename().string();
+                for (const int frame : numbers_in(own))
+                    if (fs::path(name.for_frame(frame)).filename() == own)
+                        images[std::to_string(frame)] = (folder / own).string();
+            }
+        }
+    } catch (const fs::filesystem_error& error) {
+        throw file_error(error.path1().string(), "read", error.code().value());
+    }
     if (images.empty()) throw Error(ErrorKind::file, "has no images").at(text);
     return images;
 }
 
 /// Several images and their partners, a line for each.
 Judged judge_several(const CompareOptions& options, StopSignal stop) {
-    const std::map<std::string, std::string> first = images_of(options.a);
-    const std::map<std::string, std::string> second = images_of(options.b);
+    const Images first = images_of(options.a);
+    const Images second = images_of(options.b);
     std::set<std::string> names;
     RunFiles files;
     for (const auto* images : {&first, &second})

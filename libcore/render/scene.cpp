@@ -53,7 +53,6 @@ Scene::Scene(SceneSource source, PrecisionChoice choice)
     : choice_(std::move(choice)), shown_(source.description->shown), names_(name_scene(source)) {
     const std::shared_ptr<const MovingScene> moving = source.description->still ? nullptr : source.moving;
     if (!choice_.warning.empty()) warnings_.push_back(choice_.warning);
-    const std::shared_ptr<const SceneDescription> kept = source.own;  // beyond the source
     named_by_frame(*source.description, [&] {
         if (choice_.precision == Precision::double_)
             compile<double>(std::move(source));

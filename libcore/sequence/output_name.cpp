@@ -61,9 +61,10 @@ OutputName::OutputName(std::string_view text, std::string_view option) : text_(t
         digits_ = digits;
         part = &suffix_;
     };
+    const size_t file = text.rfind('/') + 1;  // npos + 1 is 0
     for (size_t i = 0; i < text.size();) {
         if (!has_pattern()) place_ = i;
-        if (text[i] == '#') {
+        if (text[i] == '#' && i >= file) {
             size_t end = i;
             while (end < text.size() && text[end] == '#') ++end;
             place(static_cast<int>(std::min<size_t>(end - i, most_digits + 1)));

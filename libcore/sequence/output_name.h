@@ -12,8 +12,8 @@
 
 namespace cistula {
 
-/// A file name or a pattern of file names. A run of # is replaced by the frame number with at least as many digits; %d
-/// and %0Nd are as in printf; %% is a percent sign.
+/// A file name or a pattern of file names. A run of # after the last / is replaced by the frame number with at least as
+/// many digits; %d and %0Nd are as in printf; %% is a percent sign.
 class OutputName {
   public:
     OutputName() = default;

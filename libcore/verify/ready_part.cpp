@@ -27,6 +27,7 @@ struct PlainIntersector {
         const TriangleRay<Real> triangle_ray = TriangleRay<Real>::of(ray.origin, ray.direction);
         for (uint32_t p = 0; p < scene.convex.size + scene.clusters.size; ++p)
             closest_primitive(scene, p, ray, triangle_ray, best);
+        closest_disk<AllEffects>(scene, true, ray, best);
         return best;
     }
 };

@@ -11,9 +11,10 @@ from __future__ import annotations
 from importlib.util import find_spec as _find_spec
 
 if _find_spec("._core", __name__):
-    from ._processor import require_processor
+    from ._processor import require_main_interpreter, require_processor
 
     require_processor()
+    require_main_interpreter()
 
     from ._core import CaseResult, ChannelDifference, Comparison, Hits, Image, backends, version as __version__
     from .comparison import compare, verify

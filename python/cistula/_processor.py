@@ -1,5 +1,7 @@
-"""Whether this processor runs the module: before it is loaded, since nothing can be said once it is."""
+"""Whether this processor and this interpreter run the module: before it is loaded, since nothing can be said once it is."""
 from __future__ import annotations
+
+import importlib
 
 _NEEDED = ("avx", "avx2", "fma", "bmi1", "bmi2", "f16c", "movbe", "abm")
 
@@ -20,3 +22,15 @@ def require_processor() -> None:
     if lacks:
         raise ImportError(f"cistula: this processor lacks {', '.join(lacks)}; x86-64-v3 is needed (Intel Haswell of 2013, AMD "
                           "Excavator or Zen, or later)")
+
+
+def require_main_interpreter() -> None:
+    """Raises ImportError in a subinterpreter: a process has the module once."""
+    for name in ("_interpreters", "_xxsubinterpreters"):  # of CPython 3.13, and of those before
+        try:
+            interpreters = importlib.import_module(name)
+        except ImportError:
+            continue
+        if interpreters.get_current() != interpreters.get_main():
+            raise ImportError("cistula: this is a subinterpreter; import it in the main interpreter, or in processes of their own")
+        return

@@ -9,16 +9,18 @@ from .scene import keywords, path_text
 
 
 def compare(a: str | os.PathLike[str] | _core.Image, b: str | os.PathLike[str] | _core.Image, *, fail: float | None = None,
-            failpercent: float = 0, hardfail: float | None = None, layers: Sequence[str] | str | None = None) -> _core.Comparison:
+            failpercent: float = 0, hardfail: float | None = None, allow_nonfinite: bool = False,
+            layers: Sequence[str] | str | None = None) -> _core.Comparison:
     """Compares two pictures, each a file or an Image, as render-compare does.
 
     fail: a pixel fails if a channel differs by more; failpercent: the percentage of pixels that may; hardfail: no pixel may
-    differ by more. Without them every bit counts. layers: patterns with * and ? of the channels that count. The result is
+    differ by more. Without them every bit counts. With them what is not finite fails, unless allow_nonfinite is true and both
+    have it in the same places. layers: patterns with * and ? of the channels that count. The result is
     true where the pictures pass. Raises FileError, ArgumentError.
     """
     first, second = (one if isinstance(one, _core.Image) else path_text(name, one) for name, one in (("a", a), ("b", b)))
     names = [] if layers is None else layers.split(",") if isinstance(layers, str) else list(layers)
-    return _core.compare(first, second, fail, failpercent, hardfail, names)
+    return _core.compare(first, second, fail, failpercent, hardfail, allow_nonfinite, names)
 
 
 def verify(quick: bool = False, *, cases: Sequence[str] | str = (), backend: str = "embree", precision: str | None = None,

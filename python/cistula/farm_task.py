@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 RANGE = re.compile(r"(\d+)(?:-(\d+)(?:[x:](\d+))?)?")
-PLACE = re.compile(r"%%|#+|%0?(\d*)d")  # of a frame number in a name
+PLACE = re.compile(r"%%|#+(?=[^/]*\Z)|%0?(\d*)d")  # of a frame number in a name
 
 
 def parse_frames(text: str) -> list[int]:

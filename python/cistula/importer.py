@@ -96,7 +96,8 @@ def read_mesh(path: Path) -> Mesh:
     if kind == ".stl":
         return read_stl(path)
     from cistula import _core
-    found, remarks, files = _core.read_mesh(str(path))
+    from cistula.scene import path_text
+    found, remarks, files = _core.read_mesh(path_text("file", path))
     parts = [Part(path.stem if name == str(i) else name, vertices, triangles, uvs, material, keys, picture, normals)
              for i, (name, vertices, triangles, uvs, normals, keys, picture, material) in enumerate(found)]
     joined: dict[str, list[Part]] = {}

@@ -76,11 +76,16 @@ def _whole(name: str, value: object) -> int:
         raise ArgumentError(f"{name}={value!r}: must be a whole number", argument=name) from None
 
 
-def path_text(name: str, path: str | os.PathLike[str]) -> str:
-    """A file's name as the library takes it. Raises ArgumentError where a zero byte is in it, which would cut it."""
+def path_text(name: str, path: str | os.PathLike[str], errors: str = "strict") -> str:
+    """A file's name as the library takes it; errors: "surrogateescape" where its bytes need not be UTF-8. Raises ArgumentError for
+    a zero byte, which would cut it, and for what has no bytes."""
     text = os.fsdecode(path)
     if "\0" in text:
         raise ArgumentError(f"{name}={text!r}: a zero byte is in the name; give the name of a file", argument=name)
+    try:
+        text.encode("utf-8", errors)
+    except UnicodeEncodeError:
+        raise ArgumentError(f"{name}={text!r}: the name is not UTF-8; give a name that is", argument=name) from None
     return text
 
 

@@ -39,7 +39,7 @@ std::string name_of_side(const Side& side) {
 }
 
 Judged compare(const Side& a, const Side& b, std::optional<double> fail, double failpercent,
-               std::optional<double> hardfail, std::vector<std::string> layers) {
+               std::optional<double> hardfail, bool allow_nonfinite, std::vector<std::string> layers) {
     check_process();
     for (const auto& [name, value, high] : {std::tuple{"fail", fail, double(INFINITY)},
                                             {"hardfail", hardfail, double(INFINITY)},
@@ -48,11 +48,14 @@ Judged compare(const Side& a, const Side& b, std::optional<double> fail, double 
             throw Error(ErrorKind::usage, fmt::format("`{}`={}: must be a number from 0 to {}", name, *value, high));
     if (failpercent > 0 && !fail)
         throw Error(ErrorKind::usage, fmt::format("`failpercent`={}: is for `fail`", failpercent));
-    const nb::gil_scoped_release free;
+    Thresholds thresholds{fail, failpercent, hardfail};
+    thresholds.allow_nonfinite = allow_nonfinite;
+    if (allow_nonfinite && !thresholds.any())
+        throw Error(ErrorKind::usage, "`allow_nonfinite`: is for `fail` or `hardfail`; without them every bit counts");
+    const WithoutGil free;
     StoredReader reader;
     Selection selection;
     selection.layers = std::move(layers);
-    const Thresholds thresholds{fail, failpercent, hardfail};
     const bool images = std::holds_alternative<const Image*>(a) && std::holds_alternative<const Image*>(b);
     return {compare_files(file_of(a, images, reader), file_of(b, images, reader), thresholds, selection), thresholds,
             name_of_side(a), name_of_side(b)};
@@ -115,8 +118,8 @@ void bind_compare(nb::module_& m) {
             "What `render-compare --json` writes.")
         .def("__repr__",
              [](const Judged& j) { return "<cistula.Comparison: " + verdict(j.comparison, j.thresholds) + ">"; });
-    m.def("compare", compare, "a"_a, "b"_a, "fail"_a.none(), "failpercent"_a, "hardfail"_a.none(), "layers"_a,
-          "Compares two files or images. Internal.");
+    m.def("compare", compare, "a"_a, "b"_a, "fail"_a.none(), "failpercent"_a, "hardfail"_a.none(), "allow_nonfinite"_a,
+          "layers"_a, "Compares two files or images. Internal.");
 }
 
 }  // namespace cistula::python

@@ -70,17 +70,24 @@ nb::object target_of(const Image& image) {
     return told;
 }
 
-/// The name of a file to be written. Throws Error (usage) for another suffix.
-std::string named(const std::filesystem::path& path, const char* suffix) {
-    if (lower_extension(path.string()) != suffix)
-        throw Error(ErrorKind::usage, fmt::format("`path`={}: must be named *{}", path.string(), suffix));
-    return path.string();
+/// The name of a file to be written. Throws ArgumentError for one that no file has.
+std::string written_name(const nb::object& path) {
+    const nb::object text = nb::module_::import_("cistula.scene").attr("path_text")("path", path, "surrogateescape");
+    return nb::cast<std::filesystem::path>(text).string();
 }
 
-void save(Image& image, const std::filesystem::path& given) {
+/// The name of a file to be written. Throws Error (usage) for another suffix.
+std::string named(const nb::object& given, const char* suffix) {
+    std::string path = written_name(given);
+    if (lower_extension(path) != suffix)
+        throw Error(ErrorKind::usage, fmt::format("`path`={}: must be named *{}", path, suffix));
+    return path;
+}
+
+void save(Image& image, const nb::object& given) {
     const std::string path = named(given, ".exr");
     {
-        const nb::gil_scoped_release free;
+        const WithoutGil free;
         image.clamped = 0;
         write_exr(path, image.picture);
     }
@@ -105,10 +112,11 @@ Explorer explorer_of(const Image& image, StopSignal stop) {
     return {scene.scene().at(image.frame, stop), camera_at(scene.description().camera, image.frame), image.settings};
 }
 
-nb::object explore(Self self, const std::optional<std::filesystem::path>& path, double mb) {
+nb::object explore(Self self, const nb::object& given, double mb) {
     const Image& image = image_of(self);
     if (image.film.rect.width != image.film.full_width || image.film.rect.height != image.film.full_height)
         throw Error(ErrorKind::usage, "the explorer shows whole frames, and this is a crop; render it without `crop`");
+    const std::string path = given.is_none() ? "" : written_name(given);
     std::string text;
     std::atomic<bool> stop{false};
     run_interruptibly(stop, [&] {
@@ -117,9 +125,9 @@ nb::object explore(Self self, const std::optional<std::filesystem::path>& path, 
         text = explorer.start(description.source, wireframes(gather_scene(description, stop)), image.film);
         const Scene scene = image.scene->scene().at(image.frame, stop);
         const auto make = [&] { return make_embree_renderer(scene); };
-        if (path) write_file_atomically(path->string(), explorer.page(text, mb, make, stop).html);
+        if (!given.is_none()) write_file_atomically(path, explorer.page(text, mb, make, stop).html);
     });
-    if (path) return nb::none();
+    if (!given.is_none()) return nb::none();
     return nb::module_::import_("cistula.explorer").attr("widget")(self, text);
 }
 
@@ -268,12 +276,12 @@ void bind_image(nb::module_& m) {
              "Writes the EXR that render writes, byte for byte; whole or not at all.")
         .def(
             "preview",
-            [](const Image& image, const std::filesystem::path& path, double exposure, const std::string& view,
-               double bloom) {
-                const nb::gil_scoped_release free;
-                write_file_atomically(named(path, ".png"), png_of(image, {{"exposure", fmt::format("{}", exposure)},
-                                                                          {"view", view},
-                                                                          {"bloom", fmt::format("{}", bloom)}}));
+            [](const Image& image, const nb::object& given, double exposure, const std::string& view, double bloom) {
+                const std::string path = named(given, ".png");
+                const WithoutGil free;
+                write_file_atomically(path, png_of(image, {{"exposure", fmt::format("{}", exposure)},
+                                                           {"view", view},
+                                                           {"bloom", fmt::format("{}", bloom)}}));
             },
             "path"_a, "exposure"_a = 0.0, "view"_a = "srgb", "bloom"_a = 0.0,
             nb::sig("def preview(self, path: str | os.PathLike[str], exposure: float = 0.0, view: str = 'srgb', bloom: "

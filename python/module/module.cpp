@@ -9,6 +9,8 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
+#include <set>
 #include <thread>
 
 #include "base/machine.h"
@@ -30,14 +32,64 @@ void translate(const std::exception_ptr& failure, void*) {
         std::rethrow_exception(failure);
     } catch (const Error& error) {
         const Error told = error.named(argument_name);
-        const nb::object made = nb::module_::import_("cistula.errors")
-                                    .attr("of_library")(told.what(), kinds[static_cast<size_t>(told.kind())],
-                                                        argument_name(told.subject()), told.place(), told.remedy());
+        const auto text = [](const std::string& of) {  // names of files need not be UTF-8
+            return nb::steal(PyUnicode_DecodeFSDefaultAndSize(of.data(), static_cast<Py_ssize_t>(of.size())));
+        };
+        const nb::object made =
+            nb::module_::import_("cistula.errors")
+                .attr("of_library")(text(told.what()), kinds[static_cast<size_t>(told.kind())],
+                                    argument_name(told.subject()), text(told.place()), told.remedy());
         PyErr_SetObject(made.type().ptr(), made.ptr());
     }
 }
 
 std::atomic<pid_t> working_process{0};
+
+/// The work that goes on without the GIL. Nobody who has the mutex waits for the GIL.
+struct NativeWork {
+    std::mutex mutex;
+    std::condition_variable ended;
+    std::multiset<std::atomic<bool>*> stops;  // of each work; null where it has none
+    std::optional<std::thread::id> last;      // the thread that ends the interpreter
+    pid_t process = 0;
+
+    /// A forked process lacks the threads of its parent's work, which give nothing back.
+    void leave_parent() {
+        if (process == getpid()) return;
+        if (process != 0) nb::set_leak_warnings(false);
+        process = getpid();
+        stops.clear();
+        last.reset();
+    }
+    bool is_late() const { return last && *last != std::this_thread::get_id(); }
+    /// Ends, as far as Python sees, a thread that has the GIL and is late.
+    void hold_late_thread() {
+        {
+            const std::lock_guard lock(mutex);
+            leave_parent();
+            if (!is_late()) return;
+        }
+        PyEval_SaveThread();
+        for (;;) pause();
+    }
+};
+NativeWork native_work;
+thread_local int works_of_thread = 0;  // nested: callbacks may call what has work, too
+
+void end_native_work() {
+    // What daemon threads have is never given back; nanobind would tell of it.
+    if (nb::cast<int>(nb::module_::import_("threading").attr("active_count")()) > 1) nb::set_leak_warnings(false);
+    {
+        const std::lock_guard lock(native_work.mutex);
+        native_work.leave_parent();
+        native_work.last = std::this_thread::get_id();
+        for (std::atomic<bool>* const stop : native_work.stops)
+            if (stop) *stop = true;
+    }
+    const nb::gil_scoped_release free;
+    std::unique_lock lock(native_work.mutex);
+    native_work.ended.wait(lock, [] { return native_work.stops.empty(); });
+}
 
 }  // namespace
 
@@ -87,15 +139,37 @@ void check_process() {
             "multiprocessing's 'spawn' or 'forkserver', or use cistula in them alone");
 }
 
+WithoutGil::WithoutGil(std::atomic<bool>* stop) : stop_(stop) {
+    if (works_of_thread++ == 0) native_work.hold_late_thread();
+    {
+        const std::lock_guard lock(native_work.mutex);
+        native_work.stops.insert(stop);
+        if (stop && native_work.is_late()) *stop = true;
+    }
+    state_ = PyEval_SaveThread();
+}
+
+WithoutGil::~WithoutGil() {
+    PyEval_RestoreThread(state_);  // while the interpreter waits still
+    {
+        const std::lock_guard lock(native_work.mutex);
+        const auto found = native_work.stops.find(stop_);
+        if (found != native_work.stops.end()) native_work.stops.erase(found);
+    }
+    native_work.ended.notify_all();
+    if (--works_of_thread == 0) native_work.hold_late_thread();
+}
+
 void run_interruptibly(std::atomic<bool>& stop, const std::function<void()>& work, const std::function<void()>& tick) {
     check_process();
     std::exception_ptr failure, raised;
     {
-        const nb::gil_scoped_release free;
+        const WithoutGil free(&stop);
         bool done = false;
         std::mutex mutex;
         std::condition_variable changed;
         std::thread worker([&] {
+            works_of_thread = 1;
             try {
                 work();
             } catch (...) {
@@ -107,7 +181,7 @@ void run_interruptibly(std::atomic<bool>& stop, const std::function<void()>& wor
         });
         std::unique_lock lock(mutex);
         while (!changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return done; })) {
-            if (raised) continue;
+            if (stop) continue;
             lock.unlock();
             {
                 const nb::gil_scoped_acquire held;
@@ -126,6 +200,7 @@ void run_interruptibly(std::atomic<bool>& stop, const std::function<void()>& wor
     }
     if (raised) std::rethrow_exception(raised);
     if (failure) std::rethrow_exception(failure);
+    if (stop) throw std::runtime_error("stopped: Python ends");
 }
 
 void on_threads(int threads, const std::function<void()>& work) {
@@ -143,6 +218,8 @@ extern "C" void __wrap__ZNSt18condition_variable4waitERSt11unique_lockISt5mutexE
 NB_MODULE(_core, m) {
     nb::register_exception_translator(translate);
     m.doc() = "The native part of the package cistula.";
+    m.def("end_native_work", end_native_work, "Stops all work and waits for its end, before Python ends. Internal.");
+    nb::module_::import_("atexit").attr("register")(m.attr("end_native_work"));
     m.attr("version") = CISTULA_VERSION;
     m.attr("reads_all_pictures") = CISTULA_WITH_OIIO;
     m.def(

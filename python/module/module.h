@@ -51,9 +51,24 @@ const std::vector<std::string_view>& frame_keys();
 /// What Python calls a key.
 std::string argument_name(std::string_view key);
 
+/// Work without the GIL. Before the interpreter ends, it sets the work's `stop`, where there is one, and waits until
+/// all work has ended; threads other than its own then never have the GIL again. Python would end them in the midst of
+/// C++.
+class WithoutGil {
+  public:
+    explicit WithoutGil(std::atomic<bool>* stop = nullptr);
+    ~WithoutGil();
+    WithoutGil(const WithoutGil&) = delete;
+    WithoutGil& operator=(const WithoutGil&) = delete;
+
+  private:
+    std::atomic<bool>* stop_;
+    PyThreadState* state_;
+};
+
 /// Calls work() on a thread of its own, without the GIL. This thread has Python handle signals meanwhile and calls
-/// tick() with the GIL, 20 times a second; if either raises, `stop` is set, and the exception goes on once work() is
-/// done. Throws where the process was forked since work began in it: its threads are gone.
+/// tick() with the GIL, 20 times a second, until `stop` is set; if either raises, it is, and the exception goes on once
+/// work() is done. Throws where the process was forked since work began in it: its threads are gone.
 void run_interruptibly(
     std::atomic<bool>& stop, const std::function<void()>& work, const std::function<void()>& tick = [] {});
 void check_process();

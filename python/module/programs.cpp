@@ -28,7 +28,7 @@ int run_program(const std::string& name, const std::vector<nb::bytes>& words) {
     for (const nb::bytes& word : words) arguments.push_back(word.c_str());
     const auto count = static_cast<int>(arguments.size());
     arguments.push_back(nullptr);
-    const nb::gil_scoped_release free;
+    const WithoutGil free;
     if (name == "compare") return render_compare_program(count, arguments.data());
     if (name == "verify") return render_verify_program(count, arguments.data());
     return render_program(count, arguments.data(), read_other_textures);

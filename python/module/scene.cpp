@@ -149,7 +149,7 @@ template <class Ask>
 void ask_renderer(const std::shared_ptr<SceneHandle>& scene, const Keywords& keywords, const Ask& ask) {
     const RenderRequest request = request_of(keywords, {"threads", "backend", "device"});
     check_process();
-    const nb::gil_scoped_release free;
+    const WithoutGil free;
     on_threads(request.threads, [&] {
         LentRenderer renderer(scene, request.backend, request.devices);
         ask(*renderer);
@@ -189,7 +189,7 @@ nb::tuple read_mesh_parts(const std::string& path) {
     MeshData data;
     std::vector<MeshPart> parts;
     {
-        const nb::gil_scoped_release free;
+        const WithoutGil free;
         data = read_mesh(path);
         parts = placed_parts(data, {});
     }
@@ -224,13 +224,13 @@ void bind_descriptions(nb::module_& m) {
     nb::class_<SceneDescription>(m, "Description", "A scene as its author wrote it. Internal.")
         .def_static(
             "read", [](const std::string& path) { return std::make_shared<SceneDescription>(read_scene(path)); },
-            "path"_a, nb::call_guard<nb::gil_scoped_release>())
+            "path"_a, nb::call_guard<WithoutGil>())
         .def_static(
             "parse",
             [](const std::string& text, const std::string& source, const std::string& folder) {
                 return std::make_shared<SceneDescription>(read_scene_text(text, source, folder));
             },
-            "text"_a, "source"_a, "folder"_a, nb::call_guard<nb::gil_scoped_release>())
+            "text"_a, "source"_a, "folder"_a, nb::call_guard<WithoutGil>())
         .def_prop_ro("texture_files",
                      [](const SceneDescription& description) {
                          std::vector<std::tuple<std::string, std::string, std::string>> files;

@@ -6,6 +6,7 @@
 #include "testing/parity/function_cases_light.h"
 #include "testing/parity/function_cases_portable.h"
 #include "testing/parity/function_cases_refraction.h"
+#include "testing/parity/function_cases_round.h"
 #include "testing/parity/function_cases_sums.h"
 #include "testing/parity/function_cases_triangle.h"
 
@@ -25,7 +26,8 @@ using LightCases = CaseList<VectorCase<float>, VectorCase<double>, RefractCase<f
 
 using HitCases = CaseList<TriangleCase<float>, TriangleCase<double>, TriangleShadowCase<float>,
                           TriangleShadowCase<double>, ConvexCase<float>, ConvexCase<double>, ConvexIntervalCase<float>,
-                          ConvexIntervalCase<double>, ConvexShadowCase<float>, ConvexShadowCase<double>>;
+                          ConvexIntervalCase<double>, ConvexShadowCase<float>, ConvexShadowCase<double>,
+                          BallCase<float>, BallCase<double>, DiskCase<float>, DiskCase<double>>;
 
 template <class... A, class... B, class... C>
 CaseList<A..., B..., C...> joined(CaseList<A...>, CaseList<B...>, CaseList<C...>);

@@ -207,6 +207,28 @@ TEST(Contacts, ABoxStandsOnAMeshOfManySquares) {
     }
 }
 
+/// Around a tip every triangle comes near every other: two fans have more than 16 million pairs, of which few touch.
+TEST(Contacts, FansApartAreNoCrowd) {
+    for (const double height : {0.0, 1.0}) {
+        Bodies bodies;
+        const uint32_t n = 4096;
+        for (const double x : {-2.0, 2.0}) {
+            std::vector<dvec3> vertices{{x, 0, height}};
+            std::vector<std::array<uint32_t, 3>> triangles;
+            for (uint32_t i = 0; i < n; ++i) {
+                const double angle = 2 * M_PI * i / n;
+                vertices.push_back({x + std::cos(angle), std::sin(angle), 0});
+                triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
+            }
+            bodies.add(vertices, triangles);
+        }
+        EXPECT_TRUE(gathered(bodies).bodies->contacts.planes.empty());
+        bodies.quad({-2.1, 0.2, height == 0 ? 0 : -1}, {0.2, 0, 0}, {0, 0.2, 0});
+        const auto pairs = touching(gathered(bodies).bodies->contacts);
+        EXPECT_EQ(pairs.size(), height == 0 ? 1u : 0u) << "only what lies on a flat one touches it";
+    }
+}
+
 TEST(Contacts, GapsOfAThousandthOfABodyStay) {
     for (const double edge : {1.0, 0.1, 0.01, 1e-3, 1e-4})
         for (const int digits : {9, int(exact)})

@@ -361,7 +361,7 @@ TYPED_TEST(CompileScene, TooManyObjectsInOnePlaceAreRefused) {
     EXPECT_NO_THROW(compile_scene<TypeParam>(scene));
     for (int i = 200; i < 6000; ++i) add_object(scene, square());
     expect_error([&] { compile_scene<TypeParam>(scene); }, ExitCode::usage,
-                 ": more than 16 million pairs of faces come near one another");
+                 ": more than 16 million pairs of faces touch or nearly touch");
 }
 
 /// Absorption is refused by the size of the solids of the material, whatever else the scene has.

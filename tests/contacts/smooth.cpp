@@ -1,5 +1,6 @@
 // Ray trees in glass meshes with all kinds of normals (docs/rules.md, 17): of every line that leaves a face, on which
 // side it goes, and whether one inside finds its way out.
+#include "cistula/transport/pixel.h"
 #include "cistula/traversal/bvh.h"
 #include "scene/compile/scene_source.h"
 #include "testing/support/contacts/contact_walk.h"

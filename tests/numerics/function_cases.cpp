@@ -69,8 +69,8 @@ TEST(FunctionCases, EveryFunctionHasBothPrecisionsOrIsDoubleOnly) {
         EXPECT_TRUE(has.count("double")) << name;
         both += has.size() == 2;
     }
-    EXPECT_EQ(both, 19u);
-    EXPECT_EQ(precisions.size(), 32u);
+    EXPECT_EQ(both, 21u);
+    EXPECT_EQ(precisions.size(), 34u);
 }
 
 template <class Real>
@@ -319,6 +319,45 @@ TYPED_TEST(FunctionInputs, IntervalsOfAllKinds) {
     });
     for (const int count : {met, empty, inside, spared, beyond, skipping}) EXPECT_GT(count, 1000);
     EXPECT_GT(zero, 100);
+}
+
+TYPED_TEST(FunctionInputs, BallsAndDisksAreMetFromEverywhere) {
+    using Real = TypeParam;
+    int entered = 0, passed = 0, left = 0, missed = 0, from_surface = 0, from_kin = 0, grazed = 0, tied = 0, before = 0;
+    for_each_input<BallCase<Real>>([&](const BallInput<Real>& in, const uint64_t* words) {
+        const bool inside = in.ray.media.contains(0), hit = words[1] != no_key;
+        const Real square = real_of<Real>(words[7]);
+        entered += hit && !inside;
+        left += hit && inside;
+        missed += !hit;
+        passed += hit && !inside && words[4] != no_key;
+        from_surface += hit && in.ray.from_solid == 0;
+        from_kin += in.ray.from_solid == 1 && in.balls[0].has_kin != 0;
+        grazed += magnitude(square) < Real(0x1p-18) * in.balls[0].radius * in.balls[0].radius;
+        (words[5] == words[1] ? tied : before) += hit;
+    });
+    std::printf(
+        "%s balls: entered %d, then left %d, left from inside %d, missed %d, from the surface %d, from kin %d, "
+        "grazed %d; won ties %d, lost %d\n",
+        RealTraits<Real>::name, entered, passed, left, missed, from_surface, from_kin, grazed, tied, before);
+    for (const int count : {entered, passed, left, missed, from_surface, from_kin}) EXPECT_GT(count, 1000);
+    for (const int count : {grazed, tied, before}) EXPECT_GT(count, 100);
+    int met = 0, outside = 0, moved = 0, near_ball = 0, turned = 0, endless = 0, again = 0;
+    for_each_input<DiskCase<Real>>([&](const DiskInput<Real>& in, const uint64_t* words) {
+        const bool hit = words[1] != no_key;
+        met += hit;
+        outside += !hit && real_of<Real>(words[7]) > 0;
+        moved += real_of<Real>(words[11]) > 0;
+        near_ball += hit && in.solids[0].first_group != 0;
+        turned += hit && in.solids[0].first_group != 0 && in.ray.from_solid == 1;
+        endless += hit && in.disk.square > 1000;
+        again += words[5] != no_key;
+    });
+    std::printf("%s disks: met %d, passed by %d, from afar %d, near a ball %d, from it %d, endless %d\n",
+                RealTraits<Real>::name, met, outside, moved, near_ball, turned, endless);
+    for (const int count : {met, outside, near_ball, endless}) EXPECT_GT(count, 1000);
+    for (const int count : {moved, turned}) EXPECT_GT(count, 100);
+    EXPECT_EQ(again, 0);  // a plane is crossed once
 }
 
 TYPED_TEST(FunctionInputs, RefractionOnBothSidesOfTheCriticalAngle) {

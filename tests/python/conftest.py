@@ -4,6 +4,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,19 @@ from typing import Any
 import pytest
 
 os.environ.setdefault("PYTHONWARNINGS", "default")
+
+
+def until(condition: Callable[[], bool], process: subprocess.Popen[Any] | None = None) -> None:
+    """Waits until it holds, while the process lives. What never comes true meets the limit of ctest, which alone knows of seconds."""
+    while not condition():
+        assert process is None or process.poll() is None, "it ended before"
+        time.sleep(0.005)
+
+
+def processor_seconds(process: int) -> float:
+    """The time that processors worked for it, which does not pass where others have them."""
+    words = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
 
 @pytest.fixture(scope="session")

@@ -129,6 +129,18 @@ def test_pictures_are_compared(scene: cistula.Scene, tmp_path: Path) -> None:
         cistula.compare(image, tmp_path / "none.exr")
 
 
+def test_what_is_not_finite_passes_no_threshold(scene: cistula.Scene) -> None:
+    far, near = (scene.render(size=(32, 18), layers="Z", z_far=z_far) for z_far in (np.inf, 1e5))
+    assert np.isinf(far["Z"]).any() and cistula.compare(far, far)
+    for thresholds in ({"fail": np.inf}, {"fail": 0, "failpercent": 100}, {"hardfail": np.inf}):
+        same, other = cistula.compare(far, far, **thresholds), cistula.compare(far, near, allow_nonfinite=True, **thresholds)
+        assert not same and "not finite in both; the first: Z at" in same.verdict
+        assert not other and "not finite in one" in other.verdict
+        assert cistula.compare(far, far, allow_nonfinite=True, **thresholds)
+    with pytest.raises(cistula.ArgumentError, match="allow_nonfinite: is for fail or hardfail"):
+        cistula.compare(far, far, allow_nonfinite=True)
+
+
 def test_the_renderer_checks_itself() -> None:
     told: list[cistula.CaseResult] = []
     results = cistula.verify(True, cases="geometry/axis-parallel", precision="double", progress=told.append)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import gc
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -43,6 +44,25 @@ def test_files_are_those_of_render_byte_for_byte(source: Path, render: Render, t
            "1", "--view", "filmic", "--bloom", "0.5")
     assert (tmp_path / "ours.exr").read_bytes() == (tmp_path / "file.exr").read_bytes()
     assert (tmp_path / "ours.png").read_bytes() == (tmp_path / "file.png").read_bytes()
+
+
+def test_a_name_that_no_file_has_is_an_argument_error(tmp_path: Path) -> None:
+    image = cistula.Scene.load(SOURCE / "scenes" / "platonic.json").render(size=(16, 9))
+    for bad, why in (("a\0b", "a zero byte is in the name"), ("\ud800", "the name is not UTF-8")):
+        for call in (image.save, image.preview, image.explore):
+            with pytest.raises(cistula.ArgumentError, match=f"^path=.*{why}") as error:
+                call(tmp_path / f"{bad}.{'png' if call == image.preview else 'exr'}")
+            assert error.value.argument == "path"
+    for read in (cistula.Scene.load, lambda name: cistula.compare(name, image), lambda name: cistula.Scene.from_dict({}, folder=name)):
+        with pytest.raises(cistula.ArgumentError, match="the name is not UTF-8"):
+            read("scene\udcff.json")
+    image.save(tmp_path / "\udcff.exr")
+    for call, to in ((image.save, "none/a\udcff.exr"), (image.preview, "none/\udcff.png")):
+        with pytest.raises(cistula.FileError, match=r"none/a?(\\xff|\udcff)"):
+            call(tmp_path / to)
+    assert [os.fsencode(path.name) for path in tmp_path.iterdir()] == [b"\xff.exr"]
+    with pytest.raises(TypeError, match="PathLike"):
+        image.save(1)  # type: ignore[arg-type]
 
 
 def test_a_target_error_is_reported(source: Path, render: Render, tmp_path: Path) -> None:

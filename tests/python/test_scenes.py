@@ -137,6 +137,15 @@ def test_a_wrong_scene_is_told_by_its_pointer() -> None:
     assert error.value.pointer == "/objects/1/material"
 
 
+def test_a_frame_that_is_refused_is_named() -> None:
+    onto_the_ball = {"keys": [[0, [9, 0, 0]], [2, [1, 0, 0]], [3, [9, 0, 0]]], "interpolation": "step"}
+    scene = {**SCENE, "objects": [{"solid": "sphere", "material": "clay"}], "lights": [{"position": onto_the_ball}]}
+    frames: list[int] = []
+    with pytest.raises(cistula.SceneError, match="^frame 2: .*the light lies on the surface") as error:
+        frames.extend(image.frame for image in cistula.Scene.from_dict(scene).film(range(4), size=(8, 6)))
+    assert frames == [0, 1] and error.value.pointer == "/lights/0"
+
+
 def test_several_threads_take_all_frames_of_a_film() -> None:
     film, taken = cistula.Scene.from_dict(SCENE).film([0] * 40, size=(8, 6)), list[int]()
     threads = [threading.Thread(target=lambda: taken.extend(image.frame for image in film)) for _ in range(4)]

@@ -74,6 +74,10 @@ void add_statistics(ChannelStatistics& result, const Values& first, const Placed
         ++result.values;
         for (const double value : {p_value, q_value})
             if (std::isfinite(value)) peak = std::max(peak, std::abs(value));
+        if (!std::isfinite(p_value) || !std::isfinite(q_value)) {
+            NonfiniteValues& found = d > 0 ? result.nonfinite_other : result.nonfinite_alike;
+            if (found.count++ == 0) found = {1, x, y, p_value, q_value};
+        }
         if (is_equal) return;
         ++result.differing;
         if (!is_placed || d > result.max) {

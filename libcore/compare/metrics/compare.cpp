@@ -210,6 +210,12 @@ size_t Comparison::differing() const {
     return sum;
 }
 
+size_t Comparison::nonfinite(NonfiniteValues ChannelStatistics::*kind) const {
+    size_t sum = 0;
+    for (const ChannelStatistics& channel : channels) sum += (channel.*kind).count;
+    return sum;
+}
+
 bool Comparison::has_only_floats() const {
     const auto is_float = [](StoredType type) { return type == StoredType::half || type == StoredType::float_; };
     return std::all_of(channels.begin(), channels.end(), [&](const ChannelStatistics& channel) {
@@ -243,6 +249,8 @@ Comparison compare_pictures(const LayeredPicture& a, const LayeredPicture& b, co
 bool passes(const Comparison& comparison, const Thresholds& thresholds) {
     if (!comparison.structure.empty()) return false;
     if (!thresholds.any()) return comparison.differing() == 0 && comparison.header.empty();
+    if (comparison.nonfinite(&ChannelStatistics::nonfinite_other) > 0) return false;
+    if (!thresholds.allow_nonfinite && comparison.nonfinite(&ChannelStatistics::nonfinite_alike) > 0) return false;
     const FlipResult* const flip = comparison.flip ? &*comparison.flip : nullptr;
     if (thresholds.flip && !(flip && flip->absent.empty() && flip->mean <= *thresholds.flip)) return false;
     if (thresholds.ssim && !(comparison.least_ssim() >= thresholds.ssim)) return false;

@@ -22,6 +22,7 @@ struct Thresholds {
     std::optional<double> hardfail;  // no pixel may differ by more
     std::optional<double> flip;      // the mean of FLIP may be no more
     std::optional<double> ssim;      // of no channel it may be less
+    bool allow_nonfinite = false;    // NaN and infinities that both have in the same places pass
 
     bool any() const { return fail || hardfail || flip || ssim; }
 };
@@ -42,7 +43,8 @@ struct Comparison {
     size_t values() const;     // compared, in all channels
     size_t differing() const;  // those with different bits
     bool has_only_floats() const;
-    std::optional<double> least_ssim() const;  // of the channels that have one
+    size_t nonfinite(NonfiniteValues ChannelStatistics::*kind) const;  // in all channels
+    std::optional<double> least_ssim() const;                          // of the channels that have one
 };
 
 /// Whether values of two files can count: some windows are the same, or may differ.

@@ -27,6 +27,17 @@ std::string over_hardfail_text(const Comparison& comparison, const Thresholds& t
     return fmt::format("{} over `hardfail` {}", counted(comparison.over_hardfail, "pixel"), *thresholds.hardfail);
 }
 
+/// "2 values are not finite in both; the first: R at (12, 34): nan / nan"; empty: there are none.
+std::string nonfinite_text(const Comparison& comparison, NonfiniteValues ChannelStatistics::*kind, const char* where) {
+    const size_t count = comparison.nonfinite(kind);
+    if (count == 0) return "";
+    const auto first = std::find_if(comparison.channels.begin(), comparison.channels.end(),
+                                    [&](const ChannelStatistics& channel) { return (channel.*kind).count > 0; });
+    const NonfiniteValues& values = (*first).*kind;
+    return fmt::format("{} {} not finite {}; the first: {} at ({}, {}): {:.9g} / {:.9g}", counted(count, "value"),
+                       count == 1 ? "is" : "are", where, first->name, values.x, values.y, values.a, values.b);
+}
+
 Json number(double value) {
     if (std::isnan(value)) return "nan";
     if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -74,6 +85,8 @@ Json channel_json(const ChannelStatistics& c) {
             {"ssim", optional_number(c.ssim)},
             {"differing", c.differing},
             {"infinite", c.infinite},
+            {"nonfinite_alike", c.nonfinite_alike.count},
+            {"nonfinite_other", c.nonfinite_other.count},
             {"worst", worst}};
 }
 
@@ -116,6 +129,13 @@ std::string verdict(const Comparison& comparison, const Thresholds& thresholds) 
         if (!comparison.header.empty()) parts.push_back("the header differs");
         return fmt::format("differ: {}", fmt::join(parts, "; "));
     }
+    const auto say_nonfinite = [&](NonfiniteValues ChannelStatistics::*kind, const char* where, const char* hint) {
+        if (const std::string text = nonfinite_text(comparison, kind, where); !text.empty())
+            parts.push_back(text + hint);
+    };
+    say_nonfinite(&ChannelStatistics::nonfinite_other, "in one, or differently in both", "");
+    say_nonfinite(&ChannelStatistics::nonfinite_alike, "in both",
+                  thresholds.allow_nonfinite ? "" : "; `allow_nonfinite` lets these pass");
     if (comparison.pixels > 0) {
         if (thresholds.fail) parts.push_back(over_fail_text(comparison, thresholds));
         if (thresholds.hardfail) parts.push_back(over_hardfail_text(comparison, thresholds));
@@ -160,7 +180,8 @@ Json report_json(const Comparison& comparison, const Thresholds& t, const std::s
               {"failpercent", t.fail ? Json(t.failpercent) : Json()},
               {"hardfail", optional_number(t.hardfail)},
               {"failflip", optional_number(t.flip)},
-              {"failssim", optional_number(t.ssim)}}},
+              {"failssim", optional_number(t.ssim)},
+              {"allow_nonfinite", t.allow_nonfinite}}},
             {"structure", comparison.structure},
             {"header", comparison.header},
             {"not_compared", comparison.not_compared},

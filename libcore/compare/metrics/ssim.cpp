@@ -1,6 +1,6 @@
 #include "compare/metrics/channel_statistics.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -9,16 +9,17 @@
 namespace cistula {
 namespace {
 
-constexpr int side = 11;
-constexpr int radius = side / 2;
-
-/// The weights of a window's row, of sum 1; a window's are products of two.
-std::array<double, side> gaussian() {
+/// The weights of a window in one direction, of sum 1; a pixel's is the product of two. A region of fewer than 11
+/// pixels has windows of its size.
+std::vector<double> gaussian(int size) {
     constexpr double sigma = 1.5;
-    std::array<double, side> weights{};
+    std::vector<double> weights(static_cast<size_t>(std::min(size, 11)));
+    const double middle = static_cast<double>(weights.size() - 1) / 2;
     double sum = 0;
-    for (int i = 0; i < side; ++i)
-        sum += weights[static_cast<size_t>(i)] = std::exp(-(i - radius) * (i - radius) / (2 * sigma * sigma));
+    for (size_t i = 0; i < weights.size(); ++i) {
+        const double away = static_cast<double>(i) - middle;
+        sum += weights[i] = std::exp(-away * away / (2 * sigma * sigma));
+    }
     for (double& weight : weights) weight /= sum;
     return weights;
 }
@@ -67,7 +68,7 @@ struct Moments {
     }
 };
 
-/// Rows of the last `side` rows of a region.
+/// The last rows of a region, as many as a window has.
 class Rows {
   public:
     Rows(const PlacedChannel& a, const PlacedChannel& b, const Region& region)
@@ -76,25 +77,27 @@ class Rows {
           region_(region),
           width_(static_cast<size_t>(region.window.width)),
           a_shades_(width_),
-          b_shades_(width_) {
-        for (auto& row : moments_) row.resize(windows());
-        for (auto& row : missing_) row.resize(windows());
-    }
+          b_shades_(width_),
+          across_(gaussian(region.window.width)),
+          down_(gaussian(region.window.height)),
+          moments_(down_.size(), std::vector<Moments>(windows())),
+          missing_(down_.size(), std::vector<int>(windows())) {}
 
-    size_t windows() const { return width_ - side + 1; }
+    size_t windows() const { return width_ - across_.size() + 1; }
+    int height() const { return static_cast<int>(down_.size()); }
 
     void read(int row) {
         read_row(a_, region_.window, row, a_shades_);
         read_row(b_, region_.window, row, b_shades_);
-        const size_t slot = static_cast<size_t>(row) % side;
+        const size_t slot = static_cast<size_t>(row) % down_.size();
         const size_t start = static_cast<size_t>(row) * width_;
         for (size_t x = 0; x < windows(); ++x) {
             Moments sum;
             int missing = 0;
-            for (size_t i = 0; i < side; ++i) {
+            for (size_t i = 0; i < across_.size(); ++i) {
                 const double p = a_shades_[x + i];
                 const double q = b_shades_[x + i];
-                sum.add(weights_[i], {p, q, p * p, q * q, p * q});
+                sum.add(across_[i], {p, q, p * p, q * q, p * q});
                 missing += !region_.counts_at(start + x + i);
             }
             moments_[slot][x] = sum;
@@ -104,10 +107,10 @@ class Rows {
 
     /// Whether all pixels of the window that ends in `row` count; its moments are added to `sum` then.
     bool window(int row, size_t x, Moments& sum) const {
-        for (size_t i = 0; i < side; ++i) {
-            const size_t slot = (static_cast<size_t>(row) + 1 + i) % side;  // the first row of the window
+        for (size_t i = 0; i < down_.size(); ++i) {
+            const size_t slot = (static_cast<size_t>(row) + 1 + i) % down_.size();  // the first row of the window
             if (missing_[slot][x] > 0) return false;
-            sum.add(weights_[i], moments_[slot][x]);
+            sum.add(down_[i], moments_[slot][x]);
         }
         return true;
     }
@@ -117,23 +120,22 @@ class Rows {
     const Region& region_;
     size_t width_;
     std::vector<double> a_shades_, b_shades_;
-    const std::array<double, side> weights_ = gaussian();
-    std::array<std::vector<Moments>, side> moments_;
-    std::array<std::vector<int>, side> missing_;
+    const std::vector<double> across_, down_;  // weights
+    std::vector<std::vector<Moments>> moments_;
+    std::vector<std::vector<int>> missing_;
 };
 
 }  // namespace
 
 std::optional<double> ssim_of(const PlacedChannel& a, const PlacedChannel& b, const Region& region) {
     const PixelRect& window = region.window;
-    if (!is_shown(a.channel) || !is_shown(b.channel) || window.width < side || window.height < side)
-        return std::nullopt;
+    if (!is_shown(a.channel) || !is_shown(b.channel)) return std::nullopt;
     Rows rows(a, b, region);
     double sum = 0;
     size_t count = 0;
     for (int row = 0; row < window.height; ++row) {
         rows.read(row);
-        if (row < side - 1) continue;
+        if (row < rows.height() - 1) continue;
         for (size_t x = 0; x < rows.windows(); ++x) {
             Moments moments;
             if (!rows.window(row, x, moments)) continue;

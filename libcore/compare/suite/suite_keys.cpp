@@ -38,7 +38,7 @@ std::span<const Key> case_list() {
 constexpr Key thresholds_list[] = {
     {"fail", KeyType::number, {0, most}},     {"failpercent", KeyType::number, {0, 100}, "0"},
     {"hardfail", KeyType::number, {0, most}}, {"failflip", KeyType::number, {0, 1}},
-    {"failssim", KeyType::number, {-1, 1}},
+    {"failssim", KeyType::number, {-1, 1}},   {"allow_nonfinite", KeyType::boolean, {}, "false"},
 };
 
 constexpr Key recorded_list[] = {

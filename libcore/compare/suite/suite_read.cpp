@@ -43,8 +43,11 @@ Thresholds thresholds_in(const JsonValue& value) {
     keys.read("hardfail", thresholds.hardfail);
     keys.read("failflip", thresholds.flip);
     keys.read("failssim", thresholds.ssim);
+    keys.read("allow_nonfinite", thresholds.allow_nonfinite);
     if (keys.has("failpercent") && !thresholds.fail)
         keys.fail("failpercent", "needs to know when a pixel fails", "add \"fail\"");
+    if (thresholds.allow_nonfinite && !thresholds.any())
+        keys.fail("allow_nonfinite", "is for thresholds; without one every bit counts", "add \"fail\"");
     keys.finish();
     return thresholds;
 }

@@ -121,7 +121,8 @@ SceneNormalization find_normalization(const SceneSource& source) {
     const double extent = largest * normalization.factor;
     if (description.frame && extent > largest_extent)
         throw scene_error(description, "/frame",
-                          "the largest coordinate is " + std::to_string(extent) + " in the pinned frame",
+                          std::string("the largest coordinate ") + (source.moving ? "of all frames " : "") + "is " +
+                              std::to_string(extent) + " in the pinned frame",
                           "it must stay under 2: choose a lesser scale or another center");
     // If the scene does not give the frame, M may be just under 1 (see largest_extent); what is derived from it is then
     // slightly larger than necessary.

@@ -348,9 +348,11 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
             MovingScene{description, std::move(assets), box, still_meshes(description, source)});
     }
     source.moving = std::move(moving);
-    for (SourceSolid& solid : source.solids)
-        if (solid.disk && solid.disk->is_endless()) add_square(solid, find_normalization(source));
-    source.bodies = std::make_shared<const PlacedBodies>(source);
+    named_by_frame(description, [&] {
+        for (SourceSolid& solid : source.solids)
+            if (solid.disk && solid.disk->is_endless()) add_square(solid, find_normalization(source));
+        source.bodies = std::make_shared<const PlacedBodies>(source);
+    });
     return source;
 }
 

@@ -282,6 +282,19 @@ int index_of_name(const JsonValue& value, const NameIndices& indices, const std:
 
 namespace {
 
+/// Calls read(); whether it read keys. If it did, its error names their frame.
+template <class Read>
+bool reads_keys(KeyClock& clock, const Read& read) {
+    const size_t before = clock.keys.size();
+    try {
+        read();
+    } catch (const Error& error) {
+        if (clock.keys.size() == before) throw;
+        throw error.at("frame " + number_text(clock.frame));
+    }
+    return clock.keys.size() > before;
+}
+
 /// A scene file, and which parts of it keys change.
 struct JsonScene {
     Json json;
@@ -294,7 +307,8 @@ struct JsonScene {
         return JsonValue(json, label).over_time(clock).member(name);
     }
     CameraDescription camera(KeyClock& clock) const {
-        CameraDescription camera = read_camera(part("camera", clock));
+        CameraDescription camera;
+        reads_keys(clock, [&] { camera = read_camera(part("camera", clock)); });
         camera.place = label + (clock.keys.empty() ? ": /camera/path" : ": /camera");
         return camera;
     }
@@ -311,7 +325,7 @@ struct JsonScene {
     /// Gives what changes the values of a frame.
     void set(SceneDescription& scene, int frame) const {
         KeyClock clock{static_cast<double>(frame)};
-        try {
+        reads_keys(clock, [&] {
             read_around(scene, clock);
             for (const auto& [name, index] : moving_materials)
                 scene.materials[index] = material(name, part("materials", clock).member(name));
@@ -326,9 +340,7 @@ struct JsonScene {
                 scene.objects[i] = std::move(object);
             }
             for (const size_t i : moving_lights) scene.lights[i] = read_light(part("lights", clock).item(i));
-        } catch (const Error& error) {
-            throw error.at(fmt::format("frame {}", frame));
-        }
+        });
         scene.shown = frame;
     }
 };
@@ -343,14 +355,6 @@ std::vector<int> frames_around(const std::vector<double>& keys) {
     std::sort(frames.begin(), frames.end());
     frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     return frames;
-}
-
-/// Calls read(); whether it read keys.
-template <class Read>
-bool reads_keys(KeyClock& clock, const Read& read) {
-    const size_t before = clock.keys.size();
-    read();
-    return clock.keys.size() > before;
 }
 
 /// Reads the objects and the lights.
@@ -401,7 +405,7 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
             scene.textures.back().name = name;
         });
     const bool has_ambient = keys.has("ambient");
-    if (keys.has("background") || has_ambient) file->read_around(scene, clock);
+    if (keys.has("background") || has_ambient) reads_keys(clock, [&] { file->read_around(scene, clock); });
     if (keys.has("materials"))
         for_each_name(keys.at("materials").over_time(clock), "material",
                       [&](const std::string& name, const JsonValue& material) {

@@ -132,6 +132,48 @@ TEST_F(RenderFilm, AnInterruptedFilmIsWholeAndGoesOn) {
                   bytes_of(file(std::string("b.") + frame + ".exr")));
 }
 
+TEST_F(RenderFilm, WhatIsRefusedAtAFrameEndsItWithItsNumber) {
+    // V is "bad" at one frame, else "good". The first two are found by reading, the next as all frames are placed, the
+    // last as the frame is compiled.
+    const struct {
+        const char *scene, *bad, *good, *place;
+        bool renders;
+    } cases[] = {
+        {R"("objects": [{"quad": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, V]], "material": "m"}])", "1", "0",
+         "/objects/0/quad: ", false},
+        {R"("camera": {"position": V}, "objects": [])", "[0, 0, 0]", "[0, -5, 0]", "/camera/target: ", false},
+        {R"("objects": [{"disk": {"center": [0, 0, 0], "radius": 1, "normal": V}, "material": "m"}])", "[0, 0, 0]",
+         "[0, 0, 1]", "/objects/0/disk/normal: ", false},
+        {R"("objects": [{"solid": "cube", "material": "m"},
+                        {"solid": "cube", "center": [1e6, 0, 0], "radius": V, "material": "m"}])",
+         "1e-20", "1", "/objects/1: ", false},
+        {R"("objects": [{"solid": "sphere", "material": "m"}], "lights": [{"position": V}])", "[1, 0, 0]", "[9, 0, 0]",
+         "/lights/0: ", true},
+    };
+    for (const auto& [scene, bad, good, place, renders] : cases)
+        for (const int at : {0, 2, 4}) {
+            const std::string number = std::to_string(at), output = number + place[1] + std::to_string(renders);
+            std::string text = R"({"film": {"width": 8, "height": 6, "frames": 5}, "materials": {"m": {}}, )" +
+                               std::string(scene) + "}";
+            text.replace(text.find('V'), 1,
+                         std::string(R"({"interpolation": "step", "keys": [)") +
+                             (at > 0 ? std::string("[0, ") + good + "], " : "") + "[" + number + ", " + bad + "], [" +
+                             std::to_string(at + 1) + ", " + good + "]]}");
+            put_bytes(file("bad.json"), text);
+            std::filesystem::remove_all(file("film"));
+            Arguments film{"bad.json", "-q", "-o", "film/#.exr"};
+            const std::string line = "frame " + number + ": bad.json: " + place;
+            expect_refused(film, ExitCode::usage, line);
+            for (int frame = 0; frame < 5; ++frame) {
+                const std::string image = "film/" + std::to_string(frame) + ".exr";
+                EXPECT_EQ(exists(image), renders && frame < at) << line << image;
+                EXPECT_TRUE(!exists(image) || exr_is_complete(file(image))) << image;
+            }
+            film.push_back("--resume");
+            expect_refused(film, ExitCode::usage, line);
+        }
+}
+
 TEST_F(RenderFilm, SigtermStopsAStillAndTheOldFileStays) {
     put_bytes(file("a.exr"), "the old file");
     RunningProgram running(program_, {"s.json", "-v", "-o", "a.exr", "--res", "4000x3000", "--supersample", "8"},

@@ -58,13 +58,23 @@ TEST(OutputName, LayersStandBeforeTheFrameNumberOrTheExtension) {
     EXPECT_EQ(named("beauty.exr"), "beauty.diffuse.exr");
 }
 
+TEST(OutputName, NumberSignsOfFoldersAreTheirOwn) {
+    for (const std::string text : {"sh#t/a.exr", "####/####/a.exr", "/#/a", "a#/"}) {
+        EXPECT_FALSE(OutputName(text, "-o").has_pattern()) << text;
+        EXPECT_EQ(OutputName(text, "-o").for_frame(7), text);
+    }
+    EXPECT_EQ(OutputName("#1/##/f.##.exr", "-o").for_frame(7), "#1/##/f.07.exr");
+    EXPECT_EQ(OutputName("#1/#.exr", "-o").for_layer(7, "N"), "#1/N.7.exr");
+    EXPECT_EQ(OutputName("#%d/f.exr", "-o").for_frame(7), "#7/f.exr");
+}
+
 TEST(OutputName, Errors) {
     const auto conversion = [](const std::string& text) {
         return "-o " + text + ": after % only d, as in %d or %04d, or another % for a percent sign";
     };
     for (const std::string text : {"a%s.exr", "a%4d.exr", "50%.exr", "a%", "a%0", "a%-3d.exr", "a%ld.exr"})
         EXPECT_ERROR(OutputName(text, "-o"), ExitCode::usage, conversion(text));
-    for (const std::string text : {"##/a.##.exr", "%d%d.exr", "#.%d.exr"})
+    for (const std::string text : {"%d/a.##.exr", "%d%d.exr", "#.%d.exr"})
         EXPECT_ERROR(OutputName(text, "--preview"), ExitCode::usage,
                      "--preview " + text + ": two places for the frame number; a name has one, #### or %04d");
     EXPECT_ERROR(OutputName("%099d.exr", "-o"), ExitCode::usage, "-o %099d.exr: a frame number of more than 32 digits");
@@ -130,7 +140,7 @@ TEST(OutputName, DirectoriesAreMade) {
     EXPECT_EQ(scratch.names(), std::vector<std::string>{"new"});
     EXPECT_TRUE(std::filesystem::is_directory(scratch.file("new/er")));
     EXPECT_TRUE(std::filesystem::is_empty(scratch.file("new/er")));
-    make_directories(OutputName(scratch.file("f#/a.exr"), "-o"), {3, 1});
+    make_directories(OutputName(scratch.file("f%d/a.exr"), "-o"), {3, 1});
     for (const char* name : {"f1", "f3"}) EXPECT_TRUE(std::filesystem::is_directory(scratch.file(name))) << name;
     put_bytes(scratch.file("file"), "");
     EXPECT_ERROR(make_directory_of(scratch.file("file/a.exr")), ExitCode::file,

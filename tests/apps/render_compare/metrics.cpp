@@ -3,9 +3,11 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -48,10 +50,10 @@ TEST_F(CompareMetrics, RelativeMseIsRelativeToTheFirst) {
 constexpr int width = 17, height = 13;
 
 /// A picture of 8-bit sRGB codes as linear values.
-LayeredPicture of_codes(const std::vector<int>& codes) {
+LayeredPicture of_codes(const std::vector<int>& codes, int columns = width) {
     LayeredPicture picture;
-    picture.width = picture.display_width = width;
-    picture.height = picture.display_height = height;
+    picture.width = picture.display_width = columns;
+    picture.height = picture.display_height = static_cast<int>(codes.size()) / columns;
     for (const char* name : {"B", "G", "R"}) {
         Channel channel{name, false, {}};
         for (const int code : codes) channel.values.push_back(srgb8_to_linear(static_cast<uint8_t>(code)));
@@ -60,20 +62,23 @@ LayeredPicture of_codes(const std::vector<int>& codes) {
     return picture;
 }
 
-/// SSIM as in its paper, window by window, of codes from 0 to 255. `counts(i)`: whether a pixel counts.
+/// SSIM as in its paper, window by window, of codes from 0 to 255. `counts(i)`: whether a pixel counts. Windows have
+/// the size of smaller pictures.
 template <class Counts>
-double ssim_of_paper(const std::vector<int>& a, const std::vector<int>& b, Counts counts) {
+double ssim_of_paper(const std::vector<int>& a, const std::vector<int>& b, Counts counts, int columns = width) {
+    const int rows = static_cast<int>(a.size()) / columns, across = std::min(columns, 11), down = std::min(rows, 11);
     const double c1 = std::pow(0.01 * 255, 2), c2 = std::pow(0.03 * 255, 2);
     double sum = 0;
     int windows = 0;
-    for (int top = 0; top + 11 <= height; ++top)
-        for (int left = 0; left + 11 <= width; ++left) {
+    for (int top = 0; top + down <= rows; ++top)
+        for (int left = 0; left + across <= columns; ++left) {
             const auto mean = [&](auto value) {
                 double total = 0, weights = 0;
-                for (int y = 0; y < 11; ++y)
-                    for (int x = 0; x < 11; ++x) {
-                        const double weight = std::exp(-((x - 5) * (x - 5) + (y - 5) * (y - 5)) / (2 * 1.5 * 1.5));
-                        total += weight * value(static_cast<size_t>((top + y) * width + left + x));
+                for (int y = 0; y < down; ++y)
+                    for (int x = 0; x < across; ++x) {
+                        const double right = x - (across - 1) / 2.0, below = y - (down - 1) / 2.0;
+                        const double weight = std::exp(-(right * right + below * below) / (2 * 1.5 * 1.5));
+                        total += weight * value(static_cast<size_t>((top + y) * columns + left + x));
                         weights += weight;
                     }
                 return total / weights;
@@ -109,9 +114,32 @@ TEST_F(CompareMetrics, SsimIsThatOfItsPaper) {
     const double masked = ssim_of_paper(first, second, [](size_t i) { return i != 16; });
     EXPECT_NE(masked, expected);
     EXPECT_NEAR(metrics("ssim", 1, {"--mask", "mask.exr"}).at("channels")[0].at("ssim").get<double>(), masked, 1e-9);
-    EXPECT_TRUE(metrics("ssim", 1, {"--crop", "0,0,10,13"}).at("channels")[0].at("ssim").is_null());  // no window
     put("b.exr", of_codes(first));
     EXPECT_EQ(metrics("ssim", 0).at("channels")[0].at("ssim"), 1);
+}
+
+TEST_F(CompareMetrics, SsimHasSmallerWindowsWherePicturesAreSmaller) {
+    for (const auto& [columns, rows] : {std::pair{1, 1}, {4, 3}, {10, 10}, {11, 2}, {2, 30}, {12, 10}, {11, 11}}) {
+        std::vector<int> first, second;
+        for (int i = 0; i < columns * rows; ++i) {
+            first.push_back((i * 53 + 20) % 256);
+            second.push_back((i * 53 + 20 + (i % 3 == 0 ? 60 : 0)) % 256);
+        }
+        put("a.exr", of_codes(first, columns));
+        put("b.exr", of_codes(second, columns));
+        const double expected = ssim_of_paper(
+            first, second, [](size_t) { return true; }, columns);
+        EXPECT_NEAR(metrics("ssim").at("channels")[0].at("ssim").get<double>(), expected, 1e-9)
+            << columns << 'x' << rows;
+        expect_code(1, {"a.exr", "b.exr", "--failssim", "1"});
+        EXPECT_TRUE(contains(expect_code(0, {"a.exr", "a.exr", "--failssim", "1"}), "least SSIM 1.000000"));
+    }
+    std::vector<int> codes(width * height, 90);
+    put("a.exr", of_codes(codes));
+    put("b.exr", of_codes(codes));
+    for (size_t i = 0; i < codes.size(); i += 5) codes[i] = 0;  // leaves no window
+    put("mask.exr", of_codes(codes));
+    EXPECT_TRUE(metrics("ssim", 0, {"--mask", "mask.exr"}).at("channels")[0].at("ssim").is_null());
 }
 
 TEST_F(CompareMetrics, SsimIsOfColors) {

@@ -1,6 +1,7 @@
 // The built `render-compare` from outside: statistics against values worked out by hand, verdicts, exit codes, files.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
@@ -69,8 +70,48 @@ TEST_F(RenderCompare, WhatIsNotFiniteIsCountedApart) {
     EXPECT_EQ(z.at("worst"), nlohmann::json({{"x", 6}, {"y", 7}, {"first", "inf"}, {"second", 1.0}}));
     EXPECT_EQ(compare(1, {a}, {b}, {"--hardfail", "1e30"}).at("over_hardfail"), 3);
     EXPECT_EQ(compare(1, {a}, {b}, {"--fail", "0"}).at("over_fail"), 4);
-    EXPECT_EQ(compare(0, {a}, {b}, {"--fail", "0.5", "--failpercent", "37.5"}).at("over_fail"), 3);
+    EXPECT_EQ(compare(1, {a}, {b}, {"--fail", "0.5", "--failpercent", "37.5"}).at("over_fail"), 3);
+    EXPECT_EQ(z.at("nonfinite_alike"), 3);
+    EXPECT_EQ(z.at("nonfinite_other"), 3);
     compare(0, {a}, {a});  // NaN and infinity equal themselves
+}
+
+/// Thresholds that no finite difference exceeds.
+const std::vector<Arguments> loosest = {
+    {"--fail", "1e30", "--failpercent", "100"}, {"--hardfail", "1e30"}, {"--failssim", "-1"}};
+
+TEST_F(RenderCompare, WhatIsNotFinitePassesNoThreshold) {
+    const float nan = float_of(0x7fc00000);
+    const Channel one{"R", false, std::vector<float>(8, 1)};
+    const auto with = [&](size_t i, float value) {
+        Channel channel = one;
+        channel.values[i] = value;
+        return channel;
+    };
+    const std::pair<Channel, Channel> others[] = {{with(2, nan), one},
+                                                  {one, with(2, infinity)},
+                                                  {with(2, nan), with(3, nan)},
+                                                  {with(2, nan), with(2, infinity)},
+                                                  {with(2, infinity), with(2, -infinity)}};
+    for (Arguments thresholds : loosest) {
+        compare(0, {one}, {zeros, one}, thresholds);
+        for (const bool allowed : {false, true}) {
+            if (allowed) thresholds.push_back("--allow-nonfinite");
+            for (const auto& [a, b] : others) {
+                const std::string verdict = compare(1, {zeros, a}, {zeros, b}, thresholds).at("verdict");
+                EXPECT_TRUE(contains(verdict, "not finite in one, or differently in both; the first: R at (7, 7): "))
+                    << verdict;
+            }
+            for (const float value : {nan, infinity, -infinity}) {
+                const std::vector<Channel> both = {with(5, value)};
+                EXPECT_EQ(contains(compare(allowed ? 0 : 1, both, both, thresholds).at("verdict"),
+                                   "1 value is not finite in both; the first: R at (6, 8): "),
+                          true);
+            }
+        }
+    }
+    compare(0, {with(2, nan), zeros}, {with(3, nan), zeros}, {"--fail", "0", "--layers", "G"});  // R does not count
+    expect_refused({"a.exr", "b.exr", "--allow-nonfinite"}, ExitCode::usage, "--allow-nonfinite: is for thresholds");
 }
 
 TEST_F(RenderCompare, SignsOfZeroAndKindsOfNanAreBitsAndNoDifference) {
@@ -83,8 +124,8 @@ TEST_F(RenderCompare, SignsOfZeroAndKindsOfNanAreBitsAndNoDifference) {
     EXPECT_EQ(g.at("max"), 0);
     const std::string text = expect_code(1, {"a.exr", "b.exr"});
     EXPECT_TRUE(contains(text, "(6, 8): -0 (bits 80000000) / 0 (bits 00000000)\n")) << text;
-    compare(0, {a}, {b}, {"--fail", "0"});
-    compare(0, {a}, {b}, {"--hardfail", "0"});
+    compare(0, {a}, {b}, {"--fail", "0", "--allow-nonfinite"});
+    compare(0, {a}, {b}, {"--hardfail", "0", "--allow-nonfinite"});
 }
 
 TEST_F(RenderCompare, Thresholds) {
@@ -102,10 +143,12 @@ TEST_F(RenderCompare, Thresholds) {
     code(1, {"--fail", "0.1", "--failpercent", "100", "--hardfail", "0.3"});
     code(1, {"--fail", "0", "--hardfail", "1"});
     const auto all = code(0, {"--fail", "0.1", "--failpercent", "30", "--hardfail", "0.5"});
-    EXPECT_EQ(
-        all.at("thresholds"),
-        nlohmann::json(
-            {{"fail", 0.1}, {"failpercent", 30.0}, {"hardfail", 0.5}, {"failflip", nullptr}, {"failssim", nullptr}}));
+    EXPECT_EQ(all.at("thresholds"), nlohmann::json({{"fail", 0.1},
+                                                    {"failpercent", 30.0},
+                                                    {"hardfail", 0.5},
+                                                    {"failflip", nullptr},
+                                                    {"failssim", nullptr},
+                                                    {"allow_nonfinite", false}}));
     EXPECT_EQ(
         all.at("verdict"),
         "within the thresholds: 2 of 8 pixels (25 %) over --fail 0.1, 30 % allowed; 0 pixels over --hardfail 0.5");
@@ -158,6 +201,29 @@ TEST_F(RenderCompare, FoldersAndSequencesAreComparedByNamesAndNumbers) {
     expect_refused({"a", "a/f.0001.exr"}, ExitCode::usage, "give two folders, or two sequences");
     expect_refused({"a", "b", "--diff", "d.exr"}, ExitCode::usage, "--diff d.exr: is one image");
     expect_refused({"c.##.exr", "a/f.##.exr"}, ExitCode::file, "c.##.exr: has no images");
+}
+
+TEST_F(RenderCompare, FoldersAreComparedWithAllThatIsInThem) {
+    namespace fs = std::filesystem;
+    for (const char* folder : {"a/deep/er", "b/deep/er", "b/other.exr", "linked"}) fs::create_directories(file(folder));
+    for (const char* name : {"a/f.exr", "b/f.exr", "a/deep/er/f.exr", "linked/g.exr"}) put(name, picture_of({first_r}));
+    put("b/deep/er/f.exr", picture_of({second_r}));
+    EXPECT_EQ(expect_code(1, {"a", "b"}),
+              "deep/er/f.exr: differ: 2 of 8 floats differ\nf.exr: equal: every bit of 8 floats and of the header\n"
+              "differ: 1 of 2 images\n");
+    put("b/deep/er/f.exr", picture_of({first_r}));
+    expect_code(0, {"a", "b"});
+    fs::create_directory_symlink(file("linked"), file("a/deep/link"));
+    EXPECT_TRUE(contains(expect_code(1, {"a", "b"}), "deep/link/g.exr: only in the first\n"));
+    EXPECT_TRUE(contains(expect_code(1, {"b", "a"}), "deep/link/g.exr: only in the second\n"));
+    expect_refused({"a", "a", "--json", "a/deep/er/f.exr"}, ExitCode::usage, "would be both an image and --json");
+    fs::create_directory_symlink(file("b/deep"), file("b/deep/er/round"));
+    expect_refused({"a", "b"}, ExitCode::file, "b/deep/er/round: leads back to a folder that it is in");
+    fs::remove(file("b/deep/er/round"));
+    if (geteuid() == 0) GTEST_SKIP() << "root reads every folder";
+    fs::permissions(file("b/deep"), fs::perms::none);
+    expect_refused({"a", "b"}, ExitCode::file, "b/deep");
+    fs::permissions(file("b/deep"), fs::perms::owner_all);
 }
 
 /// Where no window is the same, headers decide.

@@ -200,6 +200,30 @@ TEST_F(SuiteProgram, ThresholdsAreThoseOfTwoImages) {
     EXPECT_EQ(json("r.json").at("cases")[1].at("outcome"), "holds");
 }
 
+TEST_F(SuiteProgram, WhatIsNotFinitePassesNoThreshold) {
+    render({}, "s/a.exr");
+    render({}, "s/b.exr");
+    const auto put_nan = [](LayeredPicture& picture) { picture.channels[2].values[3] = NAN; };
+    for (const std::string name : {"s/theirs.exr", "s/same.exr"}) {
+        render({}, name);
+        change(name, put_nan);
+    }
+    const auto one = [](const std::string& name, const std::string& golden, const std::string& thresholds) {
+        return fmt::format(R"("name": "{}", "rendered": "theirs.exr", "golden": "{}", "thresholds": {{{}}})", name,
+                           golden, thresholds);
+    };
+    cases({one("ssim", "a.exr", R"("failssim": 0.5)"),
+           one("anyway", "a.exr", R"("failssim": 0.5, "allow_nonfinite": true)"),
+           one("percent", "a.exr", R"("fail": 1, "failpercent": 50)"), one("both", "same.exr", R"("fail": 1)"),
+           one("said", "same.exr", R"("failssim": 0.5, "allow_nonfinite": true)")});
+    const std::string out = expect(1);
+    expect_has(out, "\ndiffer: 4 of 5 pictures\n");
+    expect_has(out, "1 value is not finite in one, or differently in both; the first: G at (3, 0): ");
+    expect_has(out,
+               "1 value is not finite in both; the first: G at (3, 0): nan / nan; --allow-nonfinite lets these pass");
+    expect(0, {"said"});
+}
+
 TEST_F(SuiteProgram, HashesHoldAndSayWhatRecordedThem) {
     cases({R"("name": "a", "layers": "N")", R"("name": "film", "frames": "0-2")"});
     expect_has(expect(0, {"--update"}), "\nrecorded: 4 of 4 pictures\n");

@@ -56,7 +56,7 @@ TEST_F(SuiteFile, HasTheOptionsOfRender) {
         R"("frames": "4-8x2", "golden": "g/a.####.exr", "resolution": [64, 48], "crop": [8, 6, 2, 1], "supersample": 3,
            "depth": 7, "cutoff": 0.5, "precision": "double", "layers": "N,Z", "bits": "half",
            "background": "transparent", "colorspace": "lin_ap1_scene", "z_far": 100,
-           "thresholds": {"fail": 0.25, "failpercent": 2, "hardfail": 1}, "backends": ["cuda", "embree"],
+           "thresholds": {"fail": 0.25, "failpercent": 2, "hardfail": 1, "allow_nonfinite": true}, "backends": ["cuda", "embree"],
            "tags": ["smoke", "glass/2"])");
     EXPECT_EQ(one.name, "a");
     EXPECT_EQ(one.frames, (std::vector<int>{4, 6, 8}));
@@ -75,6 +75,7 @@ TEST_F(SuiteFile, HasTheOptionsOfRender) {
     EXPECT_EQ(one.thresholds.fail, 0.25);
     EXPECT_EQ(one.thresholds.failpercent, 2);
     EXPECT_EQ(one.thresholds.hardfail, 1);
+    EXPECT_TRUE(one.thresholds.allow_nonfinite);
     EXPECT_EQ(one.backends, (std::vector{Backend::cuda, Backend::embree}));
     EXPECT_EQ(one.tags, (std::vector<std::string>{"smoke", "glass/2"}));
     const SuiteCase adaptive = read_case(R"("target_error": 0.02, "max_samples": 64, "z_far": "inf")");
@@ -154,6 +155,9 @@ TEST_F(SuiteFile, ValuesAreChecked) {
     expect_refused_case(R"("thresholds": {"fial": 1})", " /cases/0/thresholds/fial: unknown key; did you mean 'fail'?");
     expect_refused_case(R"("thresholds": {"failpercent": 1})",
                         " /cases/0/thresholds/failpercent: needs to know when a pixel fails; add \"fail\"");
+    expect_refused_case(
+        R"("thresholds": {"allow_nonfinite": true})",
+        " /cases/0/thresholds/allow_nonfinite: is for thresholds; without one every bit counts; add \"fail\"");
     expect_refused_case(R"("backends": ["embree", "embree"])", " /cases/0/backends/1: is given already; give it once");
     expect_refused_case(R"("backends": ["cdua"])", " /cases/0/backends/0: unknown value 'cdua'; did you mean 'cuda'?");
     expect_refused_case(R"("backends": [])",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <iterator>
 #include <set>
 #include <unordered_map>
@@ -103,6 +104,9 @@ class ContactSearch {
         };
         for (std::vector<FlatFace>& faces : find_in_parts<std::vector<FlatFace>>(bodies_.size(), add_faces))
             std::move(faces.begin(), faces.end(), std::back_inserter(faces_));
+        std::vector<RTCBuildPrimitive> primitives;
+        for (uint32_t i = 0; i < faces_.size(); ++i) primitives.push_back(padded_primitive(faces_[i].box, pad(), i));
+        tree_ = build_tree(primitives, 0);
     }
 
     /// Moves what touches, but for the digits of a file, into one plane.
@@ -120,9 +124,8 @@ class ContactSearch {
     void bind_what_coincides() {
         find_faces(false);
         pairs_.clear();
-        reaching_.clear();
-        find_flat_sheets();
         PlaneSets sets(faces_, bodies_, body_of_, range_, exact_);
+        find_flat_sheets(sets);
         find_pairs(sets);
         join_pairs(sets);
         list_planes();
@@ -185,8 +188,8 @@ class ContactSearch {
         return body;
     }
 
-    /// Finds the sheets that may overlap themselves and lie in one plane.
-    void find_flat_sheets() {
+    /// Finds the sheets that may overlap themselves, lie in one plane, and do overlap or touch something.
+    void find_flat_sheets(const PlaneSets& sets) {
         is_flat_.assign(bodies_.size(), false);
         std::vector<const FlatFace*> largest(bodies_.size(), nullptr);
         for (const FlatFace& face : faces_) {
@@ -199,76 +202,133 @@ class ContactSearch {
             if (farthest_from(plane.normal, plane.offset, body(face), face) > exact_)
                 is_flat_[body_of_[face.solid]] = false;
         }
+        std::vector<bool> meets(bodies_.size(), false);
+        const auto find = [&](uint32_t i, std::vector<uint32_t>& found) {
+            if (is_flat_[body_of_[faces_[i].solid]] && in_contact_with_any(i, sets))
+                found.push_back(body_of_[faces_[i].solid]);
+        };
+        for (const auto& found : sweep_faces<std::vector<uint32_t>>(find))
+            for (const uint32_t b : found) meets[b] = true;
+        for (size_t b = 0; b < bodies_.size(); ++b)
+            is_flat_[b] = is_flat_[b] && (meets[b] || source_.solids[bodies_[b].solid].disk);
+    }
+
+    /// Whether a face touches one of another solid, or overlaps a later one of its own.
+    bool in_contact_with_any(uint32_t i, const PlaneSets& sets) const {
+        return any_near(i, [&](uint32_t j) {
+            const bool one_solid = faces_[i].solid == faces_[j].solid;
+            return (j > i || !one_solid) && touching(i, j, distance_between(i, j, sets), sets) &&
+                   (!one_solid || overlapping(i, j));
+        });
     }
 
     // ---- pairs and sets
 
     const ContactBody& body(const FlatFace& face) const { return bodies_[body_of_[face.solid]]; }
 
-    /// What comes near one another of the faces of a part.
+    /// What touches or nearly touches of the faces of a part.
     struct FoundPairs {
         std::vector<Pair> touching, near;
-        std::vector<std::pair<uint32_t, uint32_t>> reaching;
     };
 
     void find_pairs(const PlaneSets& sets) {
-        std::vector<RTCBuildPrimitive> primitives;
-        for (uint32_t i = 0; i < faces_.size(); ++i) primitives.push_back(padded_primitive(faces_[i].box, pad(), i));
-        const Tree tree = build_tree(primitives, 0);
-        std::atomic<size_t> tried{0};
-        const auto find = [&](size_t first, size_t end, FoundPairs& found) {
-            for (auto i = uint32_t(first); i < end && tried <= most_near_pairs; ++i)
-                tried +=
-                    for_each_near(tree, i, [&](uint32_t j, bool one_solid) { compare(i, j, one_solid, sets, found); });
+        std::atomic<size_t> kept{0};
+        const auto find = [&](uint32_t i, FoundPairs& found) {
+            if (kept <= most_near_pairs) kept += find_pairs_of(i, sets, found);
         };
-        for (const FoundPairs& found : find_in_parts<FoundPairs>(faces_.size(), find)) {
+        const std::vector<FoundPairs> parts = sweep_faces<FoundPairs>(find);
+        const auto pairs_of = [&](uint32_t i) {
+            FoundPairs found;
+            return find_pairs_of(i, sets, found);
+        };
+        if (kept > most_near_pairs) refuse_crowd(most_near_pairs, pairs_of, "touch or nearly touch");
+        for (const FoundPairs& found : parts) {
             pairs_.insert(pairs_.end(), found.touching.begin(), found.touching.end());
-            reaching_.insert(reaching_.end(), found.reaching.begin(), found.reaching.end());
             for (const Pair& near : found.near)
                 add_near(faces_[near.first], faces_[near.second], near.distance, contacts_.near);
         }
-        if (tried > most_near_pairs) refuse_crowd(tree);
     }
 
-    /// Calls visit(j, one_solid) for the later faces that come near a face, at most one more than may be in all.
-    /// Returns their number.
-    template <class Visit>
-    size_t for_each_near(const Tree& tree, uint32_t i, const Visit& visit) const {
-        size_t count = 0;
-        any_in_box(tree, padded(faces_[i].box, pad()), [&](uint32_t j) {
-            if (j <= i || !touch(faces_[i].box, faces_[j].box, pad())) return false;
-            const bool one_solid = faces_[i].solid == faces_[j].solid;
-            if (one_solid && !may_overlap_itself(faces_[i].solid)) return false;
-            if (++count > most_near_pairs) return true;
-            visit(j, one_solid);
+    /// Calls find(i, found) for all faces on all threads, and returns what each part of them found, in order.
+    template <class Found, class Find>
+    std::vector<Found> sweep_faces(const Find& find) {
+        looked_at_ = 0;
+        const auto find_all = [&](size_t first, size_t end, Found& found) {
+            for (auto i = uint32_t(first); i < end && looked_at_ <= most_box_pairs; ++i) find(i, found);
+        };
+        std::vector<Found> parts = find_in_parts<Found>(faces_.size(), find_all);
+        const auto boxes_near = [&](uint32_t i) {
+            size_t count = 0;
+            any_near(i, [&](uint32_t) { return ++count, false; });
+            return count;
+        };
+        if (looked_at_ > most_box_pairs) refuse_crowd(most_box_pairs, boxes_near, "come near one another");
+        return parts;
+    }
+
+    /// Whether found(j) holds for a face other than i whose box comes near that of i; asks no further once it does.
+    template <class Found>
+    bool any_near(uint32_t i, const Found& found) const {
+        size_t looked_at = 0;
+        const bool any = any_in_box(tree_, padded(faces_[i].box, pad()), [&](uint32_t j) {
+            if (j == i || !touch(faces_[i].box, faces_[j].box, pad())) return false;
+            ++looked_at;
+            return found(j);
+        });
+        looked_at_ += looked_at;
+        return any;
+    }
+
+    /// Adds the later faces that touch a face or nearly do. Returns their number.
+    size_t find_pairs_of(uint32_t i, const PlaneSets& sets, FoundPairs& found) const {
+        const size_t before = found.touching.size() + found.near.size();
+        const bool with_own = may_overlap_itself(faces_[i].solid);
+        any_near(i, [&](uint32_t j) {
+            if (j > i && (with_own || faces_[i].solid != faces_[j].solid)) compare(i, j, sets, found);
             return false;
         });
-        return count;
+        return found.touching.size() + found.near.size() - before;
     }
 
-    [[noreturn]] void refuse_crowd(const Tree& tree) const {
-        size_t tried = 0;
+    /// Refuses the scene at the first face up to which there are more than `most` pairs, count(i) of each: no order of
+    /// threads decides which.
+    template <class Count>
+    [[noreturn]] void refuse_crowd(size_t most, const Count& count, const std::string& what) const {
         uint32_t i = 0;
-        while ((tried += for_each_near(tree, i, [](uint32_t, bool) {})) <= most_near_pairs) ++i;
+        for (size_t sum = 0; (sum += count(i)) <= most;) ++i;
         throw scene_error(*source_.description, source_.solids[faces_[i].solid].place,
-                          "more than " + std::to_string(most_near_pairs / 1'000'000) +
-                              " million pairs of faces come near one another, as where many objects are in one place",
+                          "more than " + std::to_string(most / 1'000'000) + " million pairs of faces " + what +
+                              ", as where many objects are in one place",
                           "leave out those that are there several times");
     }
 
-    void compare(uint32_t i, uint32_t j, bool one_solid, const PlaneSets& sets, FoundPairs& found) const {
+    void compare(uint32_t i, uint32_t j, const PlaneSets& sets, FoundPairs& found) const {
         const FlatFace &a = faces_[i], &b = faces_[j];
-        if (one_solid && sets.exact() && !is_flat_[body_of_[a.solid]] && !overlapping(i, j)) return;
-        if (touch(a.box, b.box, reach * tau())) found.reaching.push_back({i, j});
-        const auto& [large, small] = sets.is_larger(i, j) ? std::pair(i, j) : std::pair(j, i);
-        const double distance =
-            farthest_from(faces_[large].normal, faces_[large].offset, body(faces_[small]), faces_[small]);
-        const double tolerance = sets.tolerance(faces_[large], faces_[small]);
-        if (distance <= tolerance && touch(a.box, b.box, tolerance))
-            found.touching.push_back({distance, i, j});
-        else if (!sets.exact() && distance <= range_.near && !range_.given && touch(a.box, b.box, distance) &&
-                 !one_solid && magnitude(dot(a.normal, b.normal)) > 0.5)
+        const bool one_solid = a.solid == b.solid;
+        const double distance = distance_between(i, j, sets);
+        if (touching(i, j, distance, sets)) {
+            if (!one_solid || !sets.exact() || is_flat_[body_of_[a.solid]] || overlapping(i, j))
+                found.touching.push_back({distance, i, j});
+        } else if (!sets.exact() && distance <= range_.near && !range_.given && touch(a.box, b.box, distance) &&
+                   !one_solid && magnitude(dot(a.normal, b.normal)) > 0.5) {
             found.near.push_back({distance, i, j});
+        }
+    }
+
+    /// The largest distance of the smaller face's corners from the larger one's plane; without end where their middle
+    /// is beyond all tolerances.
+    double distance_between(uint32_t i, uint32_t j, const PlaneSets& sets) const {
+        const bool first = sets.is_larger(i, j);
+        const FlatFace &large = faces_[first ? i : j], &small = faces_[first ? j : i];
+        if (magnitude(dot(large.normal, small.middle) - large.offset) > 2 * range_.near) return INFINITY;
+        return farthest_from(large.normal, large.offset, body(small), small);
+    }
+
+    bool touching(uint32_t i, uint32_t j, double distance, const PlaneSets& sets) const {
+        if (distance > 2 * range_.near) return false;
+        const bool first = sets.is_larger(i, j);
+        const double tolerance = sets.tolerance(faces_[first ? i : j], faces_[first ? j : i]);
+        return distance <= tolerance && touch(faces_[i].box, faces_[j].box, tolerance);
     }
 
     double tau() const { return 0x1p-20 * normalization_.extent; }
@@ -448,10 +508,19 @@ class ContactSearch {
     }
 
     void list_near() {
-        for (const auto& [i, j] : reaching_) {
-            if (plane_[i] != no_plane) contacts_.solids[faces_[j].solid].near.push_back(plane_[i]);
-            if (plane_[j] != no_plane) contacts_.solids[faces_[i].solid].near.push_back(plane_[j]);
-        }
+        using SolidAndPlane = std::pair<uint32_t, uint32_t>;
+        const auto find = [&](uint32_t i, std::vector<SolidAndPlane>& found) {
+            if (plane_[i] == no_plane) return;
+            std::set<uint32_t> reached;
+            any_near(i, [&](uint32_t j) {
+                if (faces_[j].solid != faces_[i].solid && touch(faces_[i].box, faces_[j].box, reach * tau()))
+                    reached.insert(faces_[j].solid);
+                return false;
+            });
+            for (const uint32_t solid : reached) found.emplace_back(solid, plane_[i]);
+        };
+        for (const auto& found : sweep_faces<std::vector<SolidAndPlane>>(find))
+            for (const auto& [solid, plane] : found) contacts_.solids[solid].near.push_back(plane);
         list_near_endless();
         for (SolidContacts& solid : contacts_.solids) {
             std::sort(solid.near.begin(), solid.near.end());
@@ -484,9 +553,10 @@ class ContactSearch {
     std::vector<uint32_t> body_of_;  // of each solid, or no_body
     std::vector<ContactBody> bodies_;
     std::vector<FlatFace> faces_;
-    std::vector<bool> is_flat_;  // of each body: a sheet in one plane
+    Tree tree_;                                 // of the faces' padded boxes
+    mutable std::atomic<size_t> looked_at_{0};  // pairs of boxes in this sweep
+    std::vector<bool> is_flat_;                 // of each body: a sheet in one plane whose faces are joined
     std::vector<Pair> pairs_;
-    std::vector<std::pair<uint32_t, uint32_t>> reaching_;
     std::unordered_map<uint64_t, size_t> near_solids_;
     std::vector<uint32_t> plane_;  // of each face
     std::vector<PlaneEquation> equations_;

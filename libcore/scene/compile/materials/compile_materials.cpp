@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "cistula/numerics/transmittance.h"
+#include "scene/compile/scene_source.h"
 
 namespace cistula {
 namespace {
