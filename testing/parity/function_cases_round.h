@@ -131,9 +131,10 @@ CISTULA_HD inline Vec3<Real> draw_near_disk(Draw& draw, const DiskInput<Real>& i
             return along(in.disk.center, radius, way);
         case 2:
             return along(in.disk.center, radius * Real(2) * draw.unit<Real>(), way);
-        case 3:
-            return along(along(in.disk.center, radius * draw.unit<Real>(), way), draw.centered(Real(0x1p-20)),
-                         in.plane.normal);
+        case 3: {
+            const Real distance = radius * draw.unit<Real>();
+            return along(along(in.disk.center, distance, way), draw.centered(Real(0x1p-20)), in.plane.normal);
+        }
         default:
             return draw.in_cube<Real>(Real(3));
     }
@@ -149,8 +150,9 @@ struct DiskCase : CaseOf<Real, 14> {
         in.plane = {};
         in.plane.normal = draw.direction<Real>();
         if (draw.one_in(2)) {
+            const int axis = draw.between(0, 2);
             in.plane.normal = Vec3<Real>(Real(0));
-            in.plane.normal[draw.between(0, 2)] = Real(draw.sign());
+            in.plane.normal[axis] = Real(draw.sign());
         }
         in.disk = {};
         in.disk.center = draw.one_in(2) ? Vec3<Real>(Real(0)) : draw.in_cube<Real>(Real(0.5));
