@@ -15,11 +15,11 @@ struct KeyFormat<Lanes<T, n>> {
     CISTULA_INLINE static Key make(CrossingKind kind, uint32_t solid, const Key& face) {
         return Key(without_face(kind, solid)) | face;
     }
-    /// The key of a single ray as that of a lane.
+    /// The key of a single ray as that of a lane; of no crossing yet, 0, as that of none.
     CISTULA_INLINE static int32_t of_single(uint64_t key) {
-        return without_face(key_kind(key), key_solid(key)) | int32_t(key_face(key));
+        return key == 0 ? 0 : without_face(key_kind(key), key_solid(key)) | int32_t(key_face(key));
     }
-    /// The key of a lane as that of a single ray; of no crossing yet, 0, as that of none.
+    /// The key of a lane as that of a single ray, likewise.
     CISTULA_INLINE static uint64_t of_lane(const Key& key, int lane) {
         const uint32_t one = uint32_t(key[lane]);
         if (one == 0) return 0;

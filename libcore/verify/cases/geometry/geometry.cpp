@@ -296,13 +296,28 @@ glm::dvec3 drawn(Draw& draw, double half) {
 }
 
 void plan_random(Plan& plan) {
-    const uint64_t rays = plan.rays(1'700'000, 8000);  // six scenes
+    const uint64_t rays = plan.rays(1'700'000, 8000);  // seven scenes
     Draw draw(0, 7);
     const auto add = [&](const char* label, const SceneDescription& scene) {
         std::vector<glm::dvec3> points;
         for (const ObjectDescription& object : scene.objects) {
             const auto* solid = std::get_if<SolidObject>(&object.shape);
+            const auto* ball = std::get_if<SphereObject>(&object.shape);
+            const auto* disk = std::get_if<DiskObject>(&object.shape);
             const auto* mesh = std::get_if<TrianglesObject>(&object.shape);
+            if (ball || disk) {  // where others touch them, and anywhere on ball or rim
+                const glm::dvec3 middle = ball ? ball->center : disk->center;
+                const double radius = ball ? ball->radius : std::min(disk->radius, 2.0);
+                points.push_back(middle);
+                for (int k = 0; k < 12; ++k) {
+                    glm::dvec3 way(0);
+                    way[k % 3] = k < 3 ? -1 : 1;
+                    if (k >= 6) way = drawn(draw, 1);
+                    if (disk) way -= dot(way, disk->normal) / dot(disk->normal, disk->normal) * disk->normal;
+                    if (length(way) > 0.1) points.push_back(middle + radius / length(way) * way);
+                }
+                continue;
+            }
             const std::vector<glm::dvec3> more = solid ? edge_points(*solid) : mesh->vertices;
             points.insert(points.end(), more.begin(), more.end());
         }
@@ -341,6 +356,19 @@ void plan_random(Plan& plan) {
                   solid_object(PlatonicSolid::cube, {side * (k % 3), side * (k / 3 % 3), side * (k / 9)}));
     add_object(touching, parallelogram({-2, -2, -1}, {6, 0, 0}, {0, 6, 0}));
     add("touching cubes", touching);
+    SceneDescription round = empty_scene();  // touching, nested, equal and cut; planes without end through them
+    const glm::dvec3 centers[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, -1, 0.3}};
+    const double radii[] = {0.5, 0.5, 0.5, 0.4, 0.3, 0.5, 0.2};
+    for (int k = 0; k < 7; ++k) add_object(round, SphereObject{.center = centers[k], .radius = radii[k]});
+    for (int k = 0; k < 6; ++k)
+        add_object(round, SphereObject{.center = drawn(draw, 1.5), .radius = 0.1 + 0.3 * draw.unit<double>()});
+    add_object(round, solid_object(PlatonicSolid::cube, {1, 1, 0}, 0.5));
+    add_object(round, DiskObject{.center = {0, 0, 0.5}, .normal = {0, 0, 1}, .radius = 0.7});
+    add_object(round, DiskObject{.center = {0, 0, 0.5}, .normal = {0, 0, -1}, .radius = 0.3});
+    add_object(round, DiskObject{.center = {1, 0.5, 0}, .normal = {1, 2, 3}, .radius = 1});
+    add_object(round, DiskObject::plane({0, 0, 1}, -0.5));
+    add_object(round, DiskObject::plane({1, 0, 2}, 0.1));
+    add("balls and disks", round);
 }
 
 }  // namespace
