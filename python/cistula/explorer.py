@@ -12,7 +12,7 @@ def widget(image: _core.Image, start: str) -> Any:
         import anywidget
         import traitlets
     except ImportError as error:
-        raise ImportError("Image.explore() shows a widget, which needs anywidget: pip install 'cistula[notebook]'; "
+        raise ImportError("Image.explore() shows a widget, which needs anywidget: pip install 'cistula[notebooks]'; "
                           "Image.explore(\"page.html\") writes a page without it") from error
 
     def answer(shown: Any, asked: dict[str, int], _buffers: object) -> None:

@@ -6,6 +6,8 @@ import os
 import re
 import shutil
 import subprocess
+import sys
+import tomllib
 from pathlib import Path
 
 import nbclient
@@ -41,6 +43,18 @@ def test_a_notebook_runs(file: Path, checkout: Path, monkeypatch: pytest.MonkeyP
 
 def test_all_five_are_there() -> None:
     assert [file.stem[0] for file in NOTEBOOKS] == list("12345")
+
+
+def test_the_extra_brings_what_notebooks_import(source: Path) -> None:
+    code = "\n".join(cell.source for file in NOTEBOOKS for cell in nbformat.read(file, as_version=4).cells  # type: ignore[no-untyped-call]
+                     if cell.cell_type == "code")
+    imported = {name.lower() for name in re.findall(r"^\s*(?:import|from)\s+(\w+)", code, re.MULTILINE)} - sys.stdlib_module_names
+    project = tomllib.loads((source / "pyproject.toml").read_text())["project"]
+    lists = project["dependencies"] + project["optional-dependencies"]["notebooks"]
+    brought = {re.split(r"[<>=]", entry)[0] for entry in lists}
+    of_a_checkout = {"shading_model"}  # in tests/
+    assert imported - brought == {"cistula"} | of_a_checkout
+    assert {"numpy", "matplotlib", "openexr", "anywidget"} <= brought
 
 
 def test_links_of_notebooks_lead_somewhere(source: Path) -> None:
