@@ -221,7 +221,8 @@ class Scene:
         """Renders a frame: the picture that `render` writes, bit for bit.
 
         settings: see cistula.Settings. progress: called with the share that is done, 0 to 1, some 20 times a second; what it
-        raises ends the render and comes out here, and so does Ctrl-C. Raises ArgumentError, DeviceError, FrameError.
+        raises ends the render and comes out here, and so does Ctrl-C. What `render` warns of is a Python warning. Raises
+        ArgumentError, DeviceError, FrameError.
         """
         image = _core.Frames(self._core, [_whole("frame", frame)], keywords(settings)).next(progress)
         assert image is not None

@@ -93,7 +93,7 @@ void save(Image& image, const nb::object& given) {
     }
     if (image.clamped == 0) return;
     const std::string warning = fmt::format("{}: clamped: {}", path, over_largest_half(image.clamped));
-    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw nb::python_error();
+    warn(warning, 1);
 }
 
 /// The PNG that render's --preview is.

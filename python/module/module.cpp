@@ -139,6 +139,10 @@ void check_process() {
             "multiprocessing's 'spawn' or 'forkserver', or use cistula in them alone");
 }
 
+void warn(const std::string& message, int level) {
+    if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), level) != 0) throw nb::python_error();
+}
+
 WithoutGil::WithoutGil(std::atomic<bool>* stop) : stop_(stop) {
     if (works_of_thread++ == 0) native_work.hold_late_thread();
     {

@@ -51,6 +51,9 @@ const std::vector<std::string_view>& frame_keys();
 /// What Python calls a key.
 std::string argument_name(std::string_view key);
 
+/// Gives a UserWarning at the line `level` calls above. Throws where warnings are errors.
+void warn(const std::string& message, int level);
+
 /// Work without the GIL. Before the interpreter ends, it sets the work's `stop`, where there is one, and waits until
 /// all work has ended; threads other than its own then never have the GIL again. Python would end them in the midst of
 /// C++.

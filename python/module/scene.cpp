@@ -17,10 +17,12 @@
 #include "render/scene.h"
 #include "scene.h"
 #include "scene/compile/materials/required_effects.h"
+#include "scene/description/camera_path.h"
 #include "scene/readers/meshes/mesh_file.h"
 #include "scene/readers/read_scene.h"
 #include "scene/readers/scene_keys.h"
 #include "sequence/backends.h"
+#include "sequence/stats.h"
 
 namespace cistula::python {
 namespace {
@@ -35,6 +37,8 @@ class Frames {
           frames_(frames.begin(), frames.end()) {
         require_light_layers(request_.channels, *scene_->scene().layer_names());
         for (const int frame : frames) check_frame(frame);
+        const std::string turns = camera_turns(scene_->description().camera, frames);
+        if (!turns.empty()) warn(turns, 2);
     }
 
     /// The next frame; none after the last. Throws Error where it cannot be trusted.
@@ -45,6 +49,7 @@ class Frames {
         frames_.pop_front();
         if (announced_ > 0) --announced_;
         auto image = std::make_unique<Image>();
+        std::vector<std::string> notes;
         RenderProgress state;
         const double pixels = double(settings_.crop.width) * double(settings_.crop.height);
         const auto work = [&] {
@@ -57,6 +62,7 @@ class Frames {
                 if (state.stop) return;
                 image->seconds = seconds_of([&] { render_frame(renderer, camera, settings, image->film, state); });
                 image->times = renderer.times();
+                notes = renderer.notes();
             });
         };
         run_interruptibly(state.stop, work, [&] {
@@ -64,6 +70,11 @@ class Frames {
         });
         finish(*image, camera);
         if (progress) (*progress)(1.0);
+        add_totals(*image);
+        for (const std::string& note : notes) warn(note, 2);
+        const std::string depth =
+            frames_.empty() ? describe_depth_loss(totals_, description.source, settings_.depth) : "";
+        if (!depth.empty()) warn(depth, 2);
         return image;
     }
 
@@ -86,9 +97,22 @@ class Frames {
         set_container_flag(image.picture);
     }
 
+    /// Adds what the depth took from a frame; a target error knows what it misses.
+    void add_totals(const Image& image) {
+        const Film& film = image.film;
+        FrameStats frame;
+        frame.frame = image.frame;
+        frame.file = scene_->description().source;
+        if (!settings_.adaptive())
+            frame.depth_loss =
+                depth_loss(ledger_totals(film, film.totals.cut), ledger_totals(film, film.totals.radiance));
+        totals_.add(frame);
+    }
+
     std::shared_ptr<SceneHandle> scene_;
     RenderRequest request_;
     FrameSettings settings_;
+    SequenceTotals totals_;  // of the frames so far
     std::deque<int> frames_;
     size_t announced_ = 0;  // of frames_, from the front
     std::optional<LentRenderer> renderer_;

@@ -6,6 +6,7 @@ import os
 import pickle
 import sys
 import threading
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -218,6 +219,20 @@ def test_an_unknown_argument_is_a_type_error() -> None:
 def test_a_backend_that_is_not_there() -> None:
     with pytest.raises(cistula.DeviceError, match="no CUDA backend"):
         cistula.Scene.from_dict(SCENE).render(backend="cuda")
+
+
+def test_renders_warn_as_render_does(source: Path) -> None:
+    scene = cistula.Scene.load(source / "scenes/glass.json")
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        scene.render(size=(32, 18))
+        assert not said, "nothing is lost at the scene's own depth"
+        scene.render(size=(32, 18), depth=1)
+        list(scene.film(range(3), size=(32, 18), depth=1))
+    alone, film = (str(one.message) for one in said)
+    assert "glass.json: depth 1 may have taken up to " in alone
+    assert "glass.json: in 3 of 3 frames, most in frame " in film
+    assert all(one.filename == __file__ for one in said)
 
 
 def test_remarks_on_scenes_are_warnings() -> None:
