@@ -52,6 +52,7 @@ Scene::Scene(SceneSource source, const std::optional<Precision>& wanted) {
 Scene::Scene(SceneSource source, PrecisionChoice choice)
     : choice_(std::move(choice)), shown_(source.description->shown), names_(name_scene(source)) {
     const std::shared_ptr<const MovingScene> moving = source.description->still ? nullptr : source.moving;
+    const std::vector<std::string> of_reader = source.description->warnings;
     if (!choice_.warning.empty()) warnings_.push_back(choice_.warning);
     named_by_frame(*source.description, [&] {
         if (choice_.precision == Precision::double_)
@@ -59,12 +60,14 @@ Scene::Scene(SceneSource source, PrecisionChoice choice)
         else
             compile<float>(std::move(source));
     });
-    if (!moving) return;
-    const auto frames = std::make_shared<SceneFrames>(moving, choice_.precision);
-    frames->put(*this);
-    frames_ = frames;
-    for (std::string& warning : warnings_)
-        if (warning != choice_.warning) warning = in_frame(shown_, warning);
+    if (moving) {
+        const auto frames = std::make_shared<SceneFrames>(moving, choice_.precision);
+        frames->put(*this);
+        frames_ = frames;
+        for (std::string& warning : warnings_)
+            if (warning != choice_.warning) warning = in_frame(shown_, warning);
+    }
+    warnings_.insert(warnings_.end(), of_reader.begin(), of_reader.end());
 }
 
 Scene Scene::at(int frame, StopSignal stop) const {

@@ -102,6 +102,38 @@ TEST(Keys, SmoothCurvesStayInTheRange) {
     EXPECT_EQ(at_frame(scene, 10).materials[0].reflection, 1);
 }
 
+TEST(Keys, SmoothCurvesOfOpenRangesAreHeldAtAKeyOfTheirInterval) {
+    const auto with_radius = [](const std::string& keys) {
+        return json_scene(
+            R"({"materials": {"m": {}}, "objects": [{"solid": "sphere", "material": "m", "radius": {"keys": )" + keys +
+            R"(, "interpolation": "smooth"}}]})");
+    };
+    const auto radius = [](const SceneDescription& scene, int frame) {
+        return std::get<SphereObject>(at_frame(scene, frame).objects[0].shape).radius;
+    };
+    const SceneDescription stays = with_radius("[[0, 4], [10, 4], [20, 5], [30, 5]]");
+    EXPECT_LT(radius(stays, 5), 4) << "an overshoot within the range is the curve's";
+    EXPECT_GT(radius(stays, 5), 3.5);
+    EXPECT_TRUE(stays.warnings.empty());
+
+    const SceneDescription leaves = with_radius("[[0, 0.125], [10, 0.25], [20, 9], [30, 9]]");
+    for (int frame = 0; frame <= 10; ++frame) EXPECT_GE(radius(leaves, frame), 0.125) << frame;
+    EXPECT_EQ(radius(leaves, 5), 0.125);
+    EXPECT_EQ(radius(leaves, 10), 0.25);
+    EXPECT_GT(radius(leaves, 22), 9) << "above the larger key the range goes on";
+    ASSERT_EQ(leaves.warnings.size(), 1u);
+    EXPECT_EQ(leaves.warnings[0],
+              "a.json: /objects/0/radius: the smooth curve leaves what is possible between frames 0 and 10, and stays "
+              "at 0.125 there; add a key between them");
+
+    const SceneDescription wide = json_scene(
+        R"({"camera": {"fov": {"keys": [[0, 10], [10, 170], [20, 175], [30, 175]], "interpolation": "smooth"}},
+            "objects": []})");
+    for (int frame = 0; frame <= 20; ++frame) EXPECT_LE(wide.camera.at(frame).field_of_view, 175) << frame;
+    EXPECT_EQ(wide.camera.at(14).field_of_view, 175);
+    EXPECT_EQ(wide.warnings.size(), 1u);
+}
+
 TEST(Keys, FaultsHaveTheirPlace) {
     const std::string at = "a.json: /lights/0/position";
     EXPECT_WRONG(light_with(R"({"keys": [[0, [0, 0, 0]], [0, [1, 0, 0]]]})"),

@@ -221,11 +221,12 @@ struct SceneDescription {
     std::vector<ObjectDescription> objects;  // in file order, which is the priority order of their media
     std::vector<LightDescription> lights;
     std::optional<FrameOfReference> frame;
-    bool from_text_input = false;           // read from the text input
-    std::optional<uint64_t> texture_bytes;  // that all texels may take; none: default_texture_bytes()
-    std::shared_ptr<const Motion> motion;   // null: no keys change it
-    int shown = 0;                          // the frame that its values are of
-    bool still = false;                     // it stays as that frame has it
+    bool from_text_input = false;            // read from the text input
+    std::optional<uint64_t> texture_bytes;   // that all texels may take; none: default_texture_bytes()
+    std::shared_ptr<const Motion> motion;    // null: no keys change it
+    int shown = 0;                           // the frame that its values are of
+    bool still = false;                      // it stays as that frame has it
+    std::vector<std::string> warnings = {};  // of its reader, on all frames
 };
 
 /// A description that stays as a frame has it. Throws Error.

@@ -1,6 +1,7 @@
 #include "scene/readers/json_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -53,7 +54,30 @@ struct KeyedValue {
         return (values[after] - values[before]) / (frames[after] - frames[before]);
     }
 
-    glm::dvec4 at(double frame, Interpolation interpolation) const {
+    /// The cubic from key i to the next, by powers of the share of the way.
+    std::array<glm::dvec4, 4> curve(size_t i) const {
+        const double length = frames[i + 1] - frames[i];
+        const glm::dvec4 way = values[i + 1] - values[i], leave = length * tangent(i), arrive = length * tangent(i + 1);
+        return {values[i], leave, 3.0 * way - 2.0 * leave - arrive, leave + arrive - 2.0 * way};
+    }
+
+    /// The range of component c of a smooth curve between key i and the next. Where the curve would reach an end that
+    /// the range does not have, as lengths have no 0, the nearer of the two keys is the end.
+    Range range_between(size_t i, int c, Range range) const {
+        const auto [start, leave, square, cube] = curve(i);
+        const double root = -(square[c] + std::copysign(std::sqrt(square[c] * square[c] - 3 * leave[c] * cube[c]),
+                                                        square[c]));  // NaN: the curve has no turn
+        for (const double turn : {root / (3 * cube[c]), leave[c] / root}) {
+            if (!(turn > 0 && turn < 1)) continue;
+            const double far = start[c] + turn * (leave[c] + turn * (square[c] + turn * cube[c]));
+            if (far <= range.low && (range.above || range.low == least_size))
+                range.low = std::min(values[i][c], values[i + 1][c]);
+            if (far >= range.high && range.below) range.high = std::max(values[i][c], values[i + 1][c]);
+        }
+        return range;
+    }
+
+    glm::dvec4 at(double frame, Interpolation interpolation, const Range& range) const {
         const auto next = static_cast<size_t>(std::upper_bound(frames.begin(), frames.end(), frame) - frames.begin());
         if (next == 0) return values.front();
         const size_t i = next - 1;
@@ -62,9 +86,13 @@ struct KeyedValue {
         const double s = (frame - frames[i]) / length;
         const glm::dvec4 way = values[next] - values[i];
         if (interpolation == Interpolation::linear) return values[i] + s * way;
-        const glm::dvec4 leave = length * tangent(i);
-        const glm::dvec4 arrive = length * tangent(next);
-        return values[i] + s * (leave + s * (3.0 * way - 2.0 * leave - arrive + s * (leave + arrive - 2.0 * way)));
+        const auto [start, leave, square, cube] = curve(i);
+        glm::dvec4 value = start + s * (leave + s * (square + s * cube));
+        for (int c = 0; c < 4; ++c) {
+            const Range held = range_between(i, c, range);
+            value[c] = std::clamp(value[c], held.low, held.high);
+        }
+        return value;
     }
 };
 
@@ -157,7 +185,19 @@ glm::dvec4 JsonValue::keyed(const Key& key, const Read& read) const {
         keyed.values.push_back(read(JsonValue(value.json(), *source_, value.place()), key));
     }
     clock_->keys.insert(clock_->keys.end(), keyed.frames.begin(), keyed.frames.end());
-    glm::dvec4 value = keyed.at(clock_->frame, interpolation);
+    if (interpolation == Interpolation::smooth)
+        for (size_t i = 0; i + 1 < count; ++i)
+            for (int c = 0; c < 4; ++c) {
+                const Range held = keyed.range_between(i, c, key.range);
+                if (held.low == key.range.low && held.high == key.range.high) continue;
+                clock_->held.push_back(fmt::format(
+                    "{}: {}: the smooth curve leaves what is possible between frames {} and {}, and stays at {} there; "
+                    "add a key between them",
+                    *source_, place_, number_text(keyed.frames[i]), number_text(keyed.frames[i + 1]),
+                    number_text(held.low != key.range.low ? held.low : held.high)));
+                break;  // a number is all four components
+            }
+    glm::dvec4 value = keyed.at(clock_->frame, interpolation, key.range);
     for (int c = 0; c < 4; ++c) value[c] = held_in(key.range, value[c]);
     return value;
 }

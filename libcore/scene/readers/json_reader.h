@@ -24,10 +24,12 @@ using Json = nlohmann::ordered_json;  // keeps the order of keys in the file
 /// keys, strings, arrays and objects. Columns count bytes from 1.
 Json parse_json(const std::string& text, const std::string& source);
 
-/// The frame that values which change over time are read for, and the frames of all keys that were read.
+/// The frame that values which change over time are read for, the frames of all keys that were read, and what is said
+/// of smooth curves that are held.
 struct KeyClock {
     double frame = 0;
     std::vector<double> keys = {};
+    std::vector<std::string> held = {};
 };
 
 /// A value and its JSON pointer. A view: tree and source must outlive it.

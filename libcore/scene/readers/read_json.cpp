@@ -391,6 +391,7 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
     if (keys.has("camera")) {
         KeyClock of_camera;
         scene.camera = file->camera(of_camera);
+        scene.warnings = std::move(of_camera.held);
         if (!of_camera.keys.empty())
             scene.camera.at = [file](double frame) {
                 KeyClock at{frame};
@@ -416,6 +417,7 @@ SceneDescription read_json_scene(const std::string& text, const std::string& lab
                       });
     read_bodies(keys, *file, scene, clock);
     keys.finish();
+    scene.warnings.insert(scene.warnings.end(), clock.held.begin(), clock.held.end());
     if (!clock.keys.empty())
         scene.motion = std::make_shared<const Motion>(
             Motion{frames_around(clock.keys), file->moving_objects, file->moving_lights,

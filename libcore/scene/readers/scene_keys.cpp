@@ -10,11 +10,10 @@ namespace {
 
 // Limits on numbers: squares and cubes of lengths must stay in double's range, radiances up to 2^100 in float's.
 constexpr double most = 1e30;
-constexpr double least_length = 1e-30;
 constexpr double most_angle = 1e6;
 constexpr Range anywhere{-most, most};
 constexpr Range not_negative{0, most};
-constexpr Range size{least_length, most};
+constexpr Range size{least_size, most};
 constexpr Range share{0, 1};
 constexpr Range angle{-most_angle, most_angle};
 
@@ -333,7 +332,7 @@ bool allows(const Key& key, double value) {
     Range range = key.range;
     if (range.high == most) range.high = std::numeric_limits<double>::max();
     if (range.low == -most) range.low = std::numeric_limits<double>::lowest();
-    if (range.low == least_length) range.low = std::numeric_limits<double>::denorm_min();
+    if (range.low == least_size) range.low = std::numeric_limits<double>::denorm_min();
     return range.contains(value);
 }
 

@@ -14,6 +14,9 @@
 
 namespace cistula {
 
+/// The least size in files; as the low end of a range it stands for: above 0.
+inline constexpr double least_size = 1e-30;
+
 struct Range {
     double low = 0, high = 0;
     bool above = false;  // low itself is excluded
