@@ -64,14 +64,15 @@ struct KeyedValue {
     /// The range of component c of a smooth curve between key i and the next. Where the curve would reach an end that
     /// the range does not have, as lengths have no 0, the nearer of the two keys is the end.
     Range range_between(size_t i, int c, Range range) const {
+        const bool lacks_low = range.above || range.low == least_size;
+        if (!lacks_low && !range.below) return range;
         const auto [start, leave, square, cube] = curve(i);
         const double root = -(square[c] + std::copysign(std::sqrt(square[c] * square[c] - 3 * leave[c] * cube[c]),
                                                         square[c]));  // NaN: the curve has no turn
         for (const double turn : {root / (3 * cube[c]), leave[c] / root}) {
             if (!(turn > 0 && turn < 1)) continue;
             const double far = start[c] + turn * (leave[c] + turn * (square[c] + turn * cube[c]));
-            if (far <= range.low && (range.above || range.low == least_size))
-                range.low = std::min(values[i][c], values[i + 1][c]);
+            if (far <= range.low && lacks_low) range.low = std::min(values[i][c], values[i + 1][c]);
             if (far >= range.high && range.below) range.high = std::max(values[i][c], values[i + 1][c]);
         }
         return range;

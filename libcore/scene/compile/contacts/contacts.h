@@ -59,7 +59,7 @@ inline constexpr size_t most_near_pairs = 16'000'000;
 inline constexpr size_t most_box_pairs = 1'000'000'000;
 
 /// Finds the contacts of a scene. `polyhedra`: the planes of its polyhedra, in order; `sizes`: of each solid's
-/// mesh. Throws Error for more than most_near_pairs.
+/// mesh. Throws Error for more than most_near_pairs or most_box_pairs.
 Contacts find_contacts(const SceneSource& source, const SceneNormalization& normalization,
                        const std::vector<ConvexSolid>& polyhedra, const std::vector<MeshSize>& sizes);
 
