@@ -19,7 +19,7 @@ int main(int argc, char** argv) try {
     const FrameSettings settings = frame_settings(description);
     const CameraFrame camera = camera_at(description.camera, 0);
     PixelTree tree = renderer->pixel_tree(camera, settings, x, y);  // many may be asked for
-    const std::string flaws = describe_flags(tree.film.flags, description);
+    const std::string flaws = describe_flags(tree.film.flags, tree.crowd);
     const PixelReport report{x,        y,      scene.precision(), description.source,   scene.names(),
                              settings, camera, std::move(tree),   scene.hashes().of(0), flaws};
     std::fputs(pixel_json(report).c_str(), stdout);

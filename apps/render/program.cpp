@@ -168,7 +168,7 @@ void report_pixel(const RenderCommand& request, const SceneDescription& descript
     SceneTalk talk(request);
     const Scene scene = compile_for(request, std::move(source), talk);
     PixelTree tree = make_embree_renderer(scene)->pixel_tree(camera, settings, request.pixel.x, request.pixel.y);
-    const std::string flaws = describe_flags(tree.film.flags, description);
+    const std::string flaws = describe_flags(tree.film.flags, tree.crowd);
     const PixelReport report{request.pixel.x,
                              request.pixel.y,
                              scene.precision(),
@@ -229,11 +229,13 @@ void write_explorer(const RenderCommand& request) {
         const Scene scene = compile_for(request, std::move(source), talk);
         const auto make = [&] { return make_embree_renderer(scene); };
         Film film;
-        render_frame(*make(), camera, settings, film, progress);
+        const auto renderer = make();
+        render_frame(*renderer, camera, settings, film, progress);
         stop.check();
         if (film.flags != 0)
             throw Error(ErrorKind::failed, fmt::format("frame {} cannot be trusted: {}", camera.frame,
-                                                       describe_flags(film.flags, description)))
+                                                       describe_flags(film.flags, *renderer, description,
+                                                                      scene.precision(), camera, settings)))
                 .at(description.source);
         const Explorer explorer(scene, camera, settings);
         const Explorer::Page page =

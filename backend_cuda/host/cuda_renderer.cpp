@@ -72,21 +72,19 @@ class CudaRenderer : public Renderer {
         effects_ = effect_masks[plan.mask];
         for (auto& worker : workers_) worker->totals = {};
         bool whole = true;
+        int part = 0;
         try {
-            for (int part = 0; part < plan.parts && whole; ++part)
+            for (; part < plan.parts && whole && !is_unreliable(film.flags); ++part)
                 whole = !progress.stop && finish(plan, part, film, progress);
         } catch (...) {
             drop();
             throw;
         }
-        if (!whole) {
-            drop();
-            return false;
-        }
+        if (!whole || part < plan.parts) drop();
+        if (!whole) return false;
         if (settings.adaptive()) film.totals = totals_of(film);
         for (const auto& worker : workers_) {
             if (!settings.adaptive()) film.totals.add(worker->totals.counts.totals);
-            film.flags |= worker->totals.counts.flags;
             times_.kernel = std::max(times_.kernel, worker->totals.kernel_seconds);
             times_.transfer = std::max(times_.transfer, worker->totals.transfer_seconds);
         }
@@ -268,7 +266,10 @@ class CudaRenderer : public Renderer {
         if (stopped) return false;
         const uint64_t before = film.rays.total();
         film.rays = RayCounts();
-        for (const auto& worker : workers_) film.rays.add(worker->totals.counts.rays);
+        for (const auto& worker : workers_) {
+            film.rays.add(worker->totals.counts.rays);
+            film.flags |= worker->totals.counts.flags;
+        }
         progress.rays += film.rays.total() - before;
         progress.pixels_done += plan.pixels_of(part);
         return true;

@@ -41,18 +41,16 @@ bool await(const CudaEvent& done, const std::atomic<bool>& stop) {
     return true;
 }
 
-/// What a slot of the tally has counted.
+/// What a slot of the tally has counted: all but the totals of radiance, which whoever reads the pixels adds up.
 FrameCounts counts_of(const DeviceTally& tally, int slot) {
     FrameCounts counts;
     const auto& rays = tally.rays[slot];
     counts.rays = {rays[0], rays[1], rays[2], rays[3]};
-    const Total* const from = tally.totals[slot];
     for (int c = 0; c < 3; ++c) {
-        counts.totals.radiance[c] = from[c];
-        counts.totals.pruned[c] = from[7 + c];
-        counts.totals.cut[c] = from[3 + c];
+        counts.totals.pruned[c] = tally.losses[slot][c];
+        counts.totals.cut[c] = tally.losses[slot][3 + c];
     }
-    counts.totals.units = from[6];
+    counts.totals.units = {counts.rays.total(), 0, tally.most_rays[slot]};  // units_lost without a target error
     return counts;
 }
 
@@ -223,7 +221,7 @@ bool DeviceWorker<Real>::fetch(Film& film, const std::atomic<bool>& stop) {
     const auto start = std::chrono::steady_clock::now();
     if (!slot.list.places().empty()) {
         totals.kernel_seconds += slot.end.since(slot.begin) * 1e-3;
-        readback_.copy(job_for(slot).records, slot.list, film);
+        readback_.copy(job_for(slot).records, slot.list, film, totals.counts.totals);
         readback_.copy_layers(slot.layers.template as<int64_t>(), slot.list, film);
     }
     const DeviceTally& tally = *slot.tally_copy.template as<DeviceTally>();

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <mutex>
+#include <type_traits>
 
 namespace cistula {
 namespace {
@@ -72,28 +74,39 @@ void Readback::copy_blocks(const std::byte* from, size_t pixel_bytes, const Bloc
     }
 }
 
-/// Copies a part of the records, if the film keeps it.
+/// Copies a part of the records, if the film keeps it. `totals`: the radiance is added.
 template <class Part>
-void Readback::copy_part(const Part* from, const BlockList& list, const Film& film, Part* to) {
+void Readback::copy_part(const Part* from, const BlockList& list, const Film& film, Part* to, PixelTotals& totals) {
     if (to == nullptr) return;
     const auto order = rows_of_records(list.plan());
     const BlockShape shape = list.shape();
+    std::mutex together;
     copy_blocks(reinterpret_cast<const std::byte*>(from), sizeof(Part), list,
                 [&](const std::byte* bytes, int first, int count) {
                     const PixelWriter::Fence fence;
+                    PixelTotals sums;
                     for (int i = 0; i < count; ++i) {
                         const Part* of = reinterpret_cast<const Part*>(bytes) + size_t(i) * size_t(shape.pixels());
                         for_each_pixel(order, shape, list.places()[size_t(first + i)], film,
-                                       [&](size_t pixel, size_t record) { PixelWriter::put(to + pixel, of[record]); });
+                                       [&](size_t pixel, size_t record) {
+                                           PixelWriter::put(to + pixel, of[record]);
+                                           if constexpr (std::is_same_v<Part, PixelRadiance>)
+                                               for (int c = 0; c < 3; ++c)
+                                                   sums.radiance[c].add(uint64_t(of[record].radiance[c]));
+                                       });
+                    }
+                    if constexpr (std::is_same_v<Part, PixelRadiance>) {
+                        const std::lock_guard<std::mutex> lock(together);
+                        totals.add(sums);
                     }
                 });
 }
 
-void Readback::copy(const PixelPlanes& records, const BlockList& list, Film& film) {
+void Readback::copy(const PixelPlanes& records, const BlockList& list, Film& film, PixelTotals& totals) {
     const PixelPlanes to = film.pixels.planes();
-    copy_part(records.radiance, list, film, to.radiance);
-    copy_part(records.losses, list, film, to.losses);
-    copy_part(records.sights, list, film, to.sights);
+    copy_part(records.radiance, list, film, to.radiance, totals);
+    copy_part(records.losses, list, film, to.losses, totals);
+    copy_part(records.sights, list, film, to.sights, totals);
 }
 
 void Readback::copy_layers(const int64_t* layers, const BlockList& list, Film& film) {

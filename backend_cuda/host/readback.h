@@ -13,8 +13,9 @@ namespace cistula {
 class Readback {
   public:
     /// Copies the records of all blocks of a list, whose kept parts are stored at `records` on the device, to the film.
-    /// It uses two page-locked buffers: one is filled while threads distribute the other over the film.
-    void copy(const PixelPlanes& records, const BlockList& list, Film& film);
+    /// It uses two page-locked buffers: one is filled while threads distribute the other over the film, and add up the
+    /// radiance for `totals`.
+    void copy(const PixelPlanes& records, const BlockList& list, Film& film, PixelTotals& totals);
 
     /// Copies the words of layers, as copy() does records.
     void copy_layers(const int64_t* layers, const BlockList& list, Film& film);
@@ -23,7 +24,7 @@ class Readback {
 
   private:
     template <class Part>
-    void copy_part(const Part* from, const BlockList& list, const Film& film, Part* to);
+    void copy_part(const Part* from, const BlockList& list, const Film& film, Part* to, PixelTotals& totals);
     template <class Unpack>
     void copy_blocks(const std::byte* from, size_t pixel_bytes, const BlockList& list, const Unpack& unpack);
 

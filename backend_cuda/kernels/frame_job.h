@@ -13,10 +13,9 @@ namespace cistula {
 /// Ray counts, totals and error flags, added up by many blocks; several slots reduce contention between them.
 struct DeviceTally {
     static constexpr int slots = 64;
-    static constexpr int totals_kept = 10;
-    static constexpr int unless_pruned = 7;  // the first of them, where a block prunes nothing
-    unsigned long long rays[slots][4];       // in the order of RayCounts
-    Total totals[slots][totals_kept];        // radiance, cut, units, pruned; not of frames with a target error
+    unsigned long long rays[slots][4];  // in the order of RayCounts
+    Total losses[slots][6];             // pruned, cut, as in PixelLosses; not of frames with a target error
+    unsigned int most_rays[slots];      // of a pixel; likewise
     unsigned int flags;
 };
 

@@ -7,18 +7,26 @@
 
 namespace cistula {
 
-/// Copies a part of a block's first `count` records from shared memory to global memory, if it is kept.
+/// Copies a part of a block's first `count` records from shared memory to global memory, if it is kept; 16 bytes at a
+/// time where a part is made of them.
 template <class Part, int count, int threads>
 __device__ void write_part(const PixelRecord* staged, Part* to) {
     using Word = unsigned long long;
-    constexpr int words = int(sizeof(Part) / sizeof(Word));
+    constexpr int words = sizeof(Part) % 16 == 0 ? 2 : 1;  // of a chunk
+    struct alignas(words * sizeof(Word)) Chunk {
+        Word word[words];
+    };
+    constexpr int chunks = int(sizeof(Part) / sizeof(Chunk));
     if (to == nullptr) return;
 #pragma unroll
-    for (int i = 0; i < count * words; i += threads) {
-        const int word = i + int(threadIdx.x);
-        if (i + threads <= count * words || word < count * words)
-            reinterpret_cast<Word*>(to)[word] =
-                reinterpret_cast<const Word*>(static_cast<const Part*>(staged + word / words))[word % words];
+    for (int i = 0; i < count * chunks; i += threads) {
+        const int chunk = i + int(threadIdx.x);
+        if (i + threads > count * chunks && chunk >= count * chunks) break;
+        const Part* part = staged + chunk / chunks;
+        Chunk copied;
+        for (int k = 0; k < words; ++k)
+            copied.word[k] = reinterpret_cast<const Word*>(part)[chunk % chunks * words + k];
+        reinterpret_cast<Chunk*>(to)[chunk] = copied;
     }
 }
 
@@ -37,6 +45,7 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
     using E = Effects<effect_masks[mask]>;
     using Stack = DeviceStack<Real, E, path>;
     constexpr int warps = kernel_shapes[mask].warps;
+    static_assert(warps % 4 == 0, "four warps' losses are added up by one");
     constexpr int threads = kernel_shapes[mask].threads();
     __shared__ Uninitialized<BlockStorage<threads>> memory;
     BlockStorage<threads>& block_storage = memory.get();
@@ -69,16 +78,20 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
         if (is_inside && i < samples) add_sample(task, i, record);
     }
     if (is_inside) end_pixel(record, own);
-    __syncthreads();
+    int64_t lost = record.cut[0] | record.cut[1] | record.cut[2];
+    if constexpr (E::has(keeps_budget)) lost |= record.pruned[0] | record.pruned[1] | record.pruned[2];
+    const bool any_lost = __syncthreads_or(lost != 0) != 0;
     static_assert(BlockPlan::shared_shape.pixels() == warp_threads);
     if (shared_tile) {
         if (warp == 0)
             for (int other = 1; other < warps; ++other) record.add(block_storage.records[other * warp_threads + lane]);
         __syncthreads();
     }
-    if (warp == 0) add_block_to_tally(*job.tally, block_storage.work);
-    if (!shared_tile || warp == warps - 1)
-        add_totals_to_tally(*job.tally, block_storage.records + (shared_tile ? 0 : threadIdx.x - lane));
+    if (warp == 0) add_block_to_tally(*job.tally, block_storage);
+    if (any_lost && warp % 4 == 3 && (!shared_tile || warp == 3)) {
+        const int count = shared_tile ? warp_threads : 4 * warp_threads;
+        add_losses_to_tally<E::has(keeps_budget)>(*job.tally, block_storage.records + warp / 4 * count, count);
+    }
     const size_t first = size_t(blockIdx.x) * size_t(shape.pixels());
     if (shared_tile)
         write_records<BlockPlan::shared_shape.pixels(), threads>(block_storage.records, job.records, first);

@@ -78,6 +78,17 @@ __device__ inline unsigned int warp_sum(unsigned int value) {
 #endif
 }
 
+/// The greatest over a warp's lanes, in every lane.
+__device__ inline unsigned int warp_most(unsigned int value) {
+#if __CUDA_ARCH__ >= 800
+    return __reduce_max_sync(0xffffffffu, value);
+#else
+    for (int step = warp_threads / 2; step > 0; step /= 2)
+        value = max_or_second(value, __shfl_xor_sync(0xffffffffu, value, step));
+    return value;
+#endif
+}
+
 /// Adds ray counts and flags to the tally. Counts are summed over the warp first, two in a word; where they could
 /// overflow, each lane adds its own.
 __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, unsigned int flags) {
@@ -98,52 +109,49 @@ __device__ inline void add_to_tally(DeviceTally& tally, const PixelRays& rays, u
 
 /// Adds the counts and flags of a whole block to the tally; called by one warp after all are done.
 template <int threads>
-__device__ void add_block_to_tally(DeviceTally& tally, const PixelWork (&work)[threads]) {
+__device__ void add_block_to_tally(DeviceTally& tally, const BlockStorage<threads>& block) {
     PixelRays rays;
     unsigned int flags = 0;
+    unsigned int most = 0;
 #pragma unroll
-    for (int i = 0; i < threads / warp_threads; ++i) {
-        const PixelWork& own = work[i * warp_threads + int(threadIdx.x) % warp_threads];
-        rays.add(own.rays);
-        flags |= own.flags;
+    for (int i = int(threadIdx.x) % warp_threads; i < threads; i += warp_threads) {
+        rays.add(block.work[i].rays);
+        flags |= block.work[i].flags;
+        most = max_or_second(block.records[i].rays, most);
     }
     add_to_tally(tally, rays, flags);
+    most = warp_most(most);
+    if (threadIdx.x % warp_threads == 0) atomicMax(&tally.most_rays[blockIdx.x % DeviceTally::slots], most);
 }
 
-/// Number i of those whose totals are kept, in the order of DeviceTally::totals.
-__device__ inline unsigned long long counted_number(const PixelRecord& record, int i) {
-    if (i == 6) return record.rays;  // units_lost without a target error
-    const int64_t* const of = i < 3 ? record.radiance : i < 6 ? record.cut : record.pruned;
-    return (unsigned long long)of[i < 6 ? i % 3 : i - 7];
-}
-
-/// Adds the numbers of as many records as a warp has lanes to the totals. Four lanes add up each number: a block ends
-/// no sooner than this, so it is to take few steps.
-__device__ inline void add_totals_to_tally(DeviceTally& tally, const PixelRecord* records) {
-    constexpr int lanes = 4;
-    constexpr int together = warp_threads / lanes;
+/// Adds what some records lost to the tally; called by one warp. As many lanes as can share each of the numbers: a
+/// block ends no sooner than this, so it is to take few steps. Without a budget nothing is pruned.
+template <bool has_budget>
+__device__ inline void add_losses_to_tally(DeviceTally& tally, const PixelRecord* records, int count) {
+    constexpr int first = has_budget ? 0 : 3;  // of DeviceTally::losses
+    constexpr int lanes = has_budget ? 4 : 8;  // for each number
     const int lane = threadIdx.x % warp_threads;
-    const int64_t* const pruned = records[lane].pruned;
-    const int kept = __any_sync(0xffffffffu, (pruned[0] | pruned[1] | pruned[2]) != 0) ? DeviceTally::totals_kept
-                                                                                       : DeviceTally::unless_pruned;
-    Total* to = tally.totals[blockIdx.x % DeviceTally::slots];
-#pragma unroll 1
-    for (int i = lane / lanes; i < (kept + together - 1) / together * together; i += together) {
-        Total total;
-        for (int record = lane % lanes; i < kept && record < warp_threads; record += lanes)
-            total.add(counted_number(records[record], i));
-        for (int step = lanes / 2; step > 0; step /= 2) {
-            Total other;
-            other.low = __shfl_xor_sync(0xffffffffu, total.low, step);
-            other.high = __shfl_xor_sync(0xffffffffu, total.high, step);
-            other.most = __shfl_xor_sync(0xffffffffu, total.most, step);
-            total.add(other);
-        }
-        if (lane % lanes != 0 || total.most == 0) continue;
-        atomicAdd(&to[i].low, total.low);
-        if (total.high != 0) atomicAdd(&to[i].high, total.high);
-        atomicMax(&to[i].most, total.most);
+    const int i = first + lane / lanes;
+    Total total;
+    if (i < 6) {
+        const PixelLosses& of = records[lane % lanes];
+        const int64_t* const number = i < 3 ? of.pruned + i : of.cut + (i - 3);
+        constexpr int stride = lanes * int(sizeof(PixelRecord) / sizeof(int64_t));
+#pragma unroll 4
+        for (int k = 0; k < count / lanes; ++k) total.add(uint64_t(number[k * stride]));
     }
+    for (int step = lanes / 2; step > 0; step /= 2) {
+        Total other;
+        other.low = __shfl_xor_sync(0xffffffffu, total.low, step);
+        other.high = __shfl_xor_sync(0xffffffffu, total.high, step);
+        other.most = __shfl_xor_sync(0xffffffffu, total.most, step);
+        total.add(other);
+    }
+    if (lane % lanes != 0 || total.most == 0) return;
+    Total& to = tally.losses[blockIdx.x % DeviceTally::slots][i];
+    atomicAdd(&to.low, total.low);
+    if (total.high != 0) atomicAdd(&to.high, total.high);
+    atomicMax(&to.most, total.most);
 }
 
 }  // namespace cistula

@@ -234,9 +234,10 @@ class FrameTask {
         const int columns = (rect.width + tile - 1) / tile;
         const int rows = (rect.height + tile - 1) / tile;
         std::mutex totals;
+        std::atomic<bool> failed{is_unreliable(film_.flags)};  // nobody wants the rest then
         const ShownTiles shown(progress_.tiles, film_, tile);
         tbb::parallel_for(tbb::blocked_range<int64_t>(0, int64_t(columns) * rows, 1), [&](const auto& range) {
-            if (stopped()) return;
+            if (stopped() || failed) return;
             const DefaultRounding rounding;
             Tile own(tile);
             for (int64_t t = range.begin(); t != range.end(); ++t) {
@@ -244,7 +245,8 @@ class FrameTask {
                 const int y = int(t / columns) * tile;
                 own.begin({x, y, std::min(tile, rect.width - x), std::min(tile, rect.height - y)});
                 render(own);
-                if (stopped()) return;
+                if (stopped() || failed) return;
+                failed = failed || is_unreliable(own.counts.flags);
                 own.put_into(film_);
                 progress_.pixels_done += uint64_t(own.rect.width) * uint64_t(own.rect.height);
                 progress_.rays += own.counts.rays.total();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -23,14 +24,16 @@ class BranchReader {
                  const FrameView& frame)
         : compiled_(compiled), scene_(scene), intersector_(intersector), frame_(frame) {}
 
-    /// Fills the branch's node and adds nodes for its children; `waiting` gets those that are on the stack.
-    void read(const Trace& trace, SampleTree& tree, uint32_t node, std::vector<uint32_t>& waiting) const {
+    /// Fills the branch's node and adds nodes for its children; `waiting` gets those that are on the stack, `crowd` the
+    /// solids that its ray was inside, if they were too many and it is empty.
+    void read(const Trace& trace, SampleTree& tree, uint32_t node, std::vector<uint32_t>& waiting,
+              std::vector<std::string>& crowd) const {
         PixelBranch branch = std::move(tree.branches[node]);
         if (trace.looks.empty()) {
             branch.end = BranchEnd::pruned;
             branch.ledger = less(trace.end.pruned, trace.begin.pruned);
         } else {
-            Replay replay{trace, branch, tree, waiting, trace.weight, 0};
+            Replay replay{trace, branch, tree, waiting, crowd, trace.weight, 0};
             const Real from = begin_of(trace.looks[0].ray);
             replay.ahead = (from < Real(0) ? 0 : trace.start) - double(from);
             read_way(replay);
@@ -44,6 +47,7 @@ class BranchReader {
         PixelBranch& branch;
         SampleTree& tree;
         std::vector<uint32_t>& waiting;
+        std::vector<std::string>& crowd;
         Vec3<Real> weight;
         double ahead;  // added to distances along the line, in frame units
     };
@@ -77,6 +81,12 @@ class BranchReader {
             size_t next = at + 1;
             SurfaceEvent<Real> event;
             resolve_event<E>(scene_, ReplayedIntersector<Real>{looks, next}, ray, hit, event);
+            if (!event.fits) {
+                replay.branch.end = BranchEnd::dropped;
+                replay.branch.distance = length_of(replay, event.hit.t);
+                if (replay.crowd.empty()) replay.crowd = names_around(ray, event);
+                break;
+            }
             const size_t after = next_on_line(looks, next, event.last());
             if (after == looks.size()) {
                 absorption.dim(scene_, ray.media, event.hit.t, replay.weight);
@@ -292,6 +302,18 @@ class BranchReader {
         face.face = key_face(key) - (solid.kind != SolidKind::convex ? solid.first_triangle : 0);
         face.crossing = key_kind(key);
         face.distance = length_of(replay, t);
+    }
+
+    /// The solids that a ray is inside on either side of an event, in the order of the file.
+    std::vector<std::string> names_around(const Ray<Real>& ray, const SurfaceEvent<Real>& event) const {
+        std::set<uint32_t> solids;
+        ray.media.for_each([&](uint32_t solid, int count) {
+            if (count > 0) solids.insert(solid);
+        });
+        for (int i = 0; i < event.count; ++i) solids.insert(key_solid(event.taken[i].key));
+        std::vector<std::string> names;
+        for (const uint32_t solid : solids) names.push_back(compiled_.solid_names[solid]);
+        return names;
     }
 
     double length_of(const Replay& replay, Real t) const { return (double(t) + replay.ahead) * frame_.unit_length; }

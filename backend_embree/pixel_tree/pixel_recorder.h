@@ -13,8 +13,8 @@ template <class Real, class Intersector>
 class SampleRecorder {
   public:
     SampleRecorder(const BranchReader<Real, Intersector>& reader, const PixelRecord& record, const PixelWork& work,
-                   const PixelTreeLimits& limits, SampleTree& tree)
-        : reader_(reader), record_(record), work_(work), limits_(limits), tree_(tree) {
+                   const PixelTreeLimits& limits, SampleTree& tree, std::vector<std::string>& crowd)
+        : reader_(reader), record_(record), work_(work), limits_(limits), tree_(tree), crowd_(crowd) {
         tree_.branches.emplace_back();
     }
 
@@ -33,7 +33,7 @@ class SampleRecorder {
         trace_.end = Sums::of(record_);
         trace_.flags = work_.flags;
         trace_.start = current_ == 0 ? work_.start : 0;
-        if (current_ != none) reader_.read(trace_, tree_, current_, waiting_);
+        if (current_ != none) reader_.read(trace_, tree_, current_, waiting_, crowd_);
         trace_ = {};
         current_ = none;
     }
@@ -52,6 +52,7 @@ class SampleRecorder {
     const PixelWork& work_;
     const PixelTreeLimits& limits_;  // of this sample
     SampleTree& tree_;
+    std::vector<std::string>& crowd_;  // of the pixel
     BranchTrace<Real> trace_;
     std::vector<uint32_t> waiting_;  // nodes of the branches on the stack
     uint32_t current_ = 0;
@@ -118,13 +119,14 @@ inline void sum_up(std::vector<PixelBranch>& branches) {
 template <class Real, class Intersector>
 bool record_sample(const BranchReader<Real, Intersector>& reader, const SceneView<Real>& scene,
                    const Intersector& intersector, const FrameView& frame, int x, int y, int sample,
-                   const TreeThreshold& threshold, const PixelTreeLimits& limits, SampleTree& tree, uint32_t& flags) {
+                   const TreeThreshold& threshold, const PixelTreeLimits& limits, SampleTree& tree,
+                   std::vector<std::string>& crowd, uint32_t& flags) {
     const GridSample place = grid_sample(sample, frame.supersample);
     tree = SampleTree();
     tree.row = place.row;
     tree.column = place.column;
     PixelWork work;
-    SampleRecorder<Real, Intersector> recorder(reader, tree.record, work, limits, tree);
+    SampleRecorder<Real, Intersector> recorder(reader, tree.record, work, limits, tree, crowd);
     const ObservedIntersector<Real, Intersector> observed{intersector, recorder};
     ObservedStack<Real, Intersector> stack(recorder);
     const PixelTask<BranchEffects, ObservedIntersector<Real, Intersector>, ObservedStack<Real, Intersector>> task{
@@ -150,14 +152,19 @@ PixelTree record_pixel(const CompiledScene<Real>& compiled, const SceneView<Real
                        const Intersector& intersector, const CameraFrame& camera, const FrameSettings& settings, int x,
                        int y, const PixelTreeLimits& limits, uint32_t& flags) {
     FrameView frame = frame_view(compiled, camera, settings);
-    if (!find_camera_solids(scene, intersector, frame)) flags |= flag_media_overflow;
-    const BranchReader<Real, Intersector> reader(compiled, scene, intersector, frame);
     PixelTree pixel;
+    if (!find_camera_solids(scene, intersector, frame)) {
+        flags |= flag_media_overflow;
+        frame.camera_sides[0].media.for_each(
+            [&](uint32_t solid, int) { pixel.crowd.push_back(compiled.solid_names[solid]); });
+    }
+    const BranchReader<Real, Intersector> reader(compiled, scene, intersector, frame);
     PixelTreeLimits left = limits;
     for (int sample = 0; sample < settings.supersample * settings.supersample; ++sample) {
         TreeThreshold threshold{frame.tree.threshold};
         SampleTree tree;
-        while (!record_sample(reader, scene, intersector, frame, x, y, sample, threshold, left, tree, flags))
+        while (
+            !record_sample(reader, scene, intersector, frame, x, y, sample, threshold, left, tree, pixel.crowd, flags))
             threshold.shrink();
         tree.branches.front().origin = camera.camera.position;
         left.branches -= std::min(left.branches, tree.branches.size());

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -18,7 +19,8 @@ using FixedColor = std::array<int64_t, 3>;
 
 enum class BranchKind { primary, mirrored, transmitted };
 
-/// How a branch ends. `dropped`: the stack of branches was full; the pixel is flagged.
+/// How a branch ends. `dropped`: the stack of branches was full, or the ray was inside more solids than it can list;
+/// the pixel is flagged.
 enum class BranchEnd { surface, light, background, pruned, cut, dropped };
 
 struct FaceMet {
@@ -105,7 +107,8 @@ struct PixelTreeLimits {
 
 struct PixelTree {
     std::vector<SampleTree> samples;
-    Film film;  // the pixel as the renderer gives it; its sums are those of the trees
+    Film film;                       // the pixel as the renderer gives it; its sums are those of the trees
+    std::vector<std::string> crowd;  // the solids that a ray was inside, where they were more than it can list
 };
 
 }  // namespace cistula

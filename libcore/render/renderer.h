@@ -134,7 +134,8 @@ class Renderer {
 bool render_frame(Renderer& renderer, const CameraFrame& camera, FrameSettings& settings, Film& film,
                   RenderProgress& progress);
 
-/// The reason why a film of a scene with these flags (RenderFlag bits) is unreliable, for a message; empty for 0.
-std::string describe_flags(uint32_t flags, const SceneDescription& scene);
+/// The reason why a film with these flags (RenderFlag bits) is unreliable, for a message; empty for 0. `crowd`: of a
+/// PixelTree.
+std::string describe_flags(uint32_t flags, const std::vector<std::string>& crowd = {});
 
 }  // namespace cistula

@@ -237,6 +237,34 @@ class MovingRenderer : public Renderer {
 
 }  // namespace
 
+std::string describe_flags(uint32_t flags, Renderer& renderer, const SceneDescription& scene, Precision precision,
+                           const CameraFrame& camera, FrameSettings settings) {
+    if ((flags & flag_media_overflow) == 0) return describe_flags(flags);
+    settings.layers = {};
+    settings.parts = {};
+    PixelRect& part = settings.crop;
+    while (part.width > 1 || part.height > 1) {
+        const bool by_width = part.width > part.height;
+        int PixelRect::*const size = by_width ? &PixelRect::width : &PixelRect::height;
+        const PixelRect all = part;
+        part.*size /= 2;
+        Film film;
+        RenderProgress progress;
+        renderer.render(camera, settings, film, progress);
+        if ((film.flags & flag_media_overflow) != 0) continue;
+        part.*(by_width ? &PixelRect::x : &PixelRect::y) += part.*size;
+        part.*size = all.*size - part.*size;
+    }
+    settings.supersample = settings.grid();  // which has all samples that adaptive sampling may take
+    settings.target_error = 0;
+    try {
+        const Scene shown = Scene(scene, precision).at(camera.frame);
+        return describe_flags(flags, make_embree_renderer(shown)->pixel_tree(camera, settings, part.x, part.y).crowd);
+    } catch (const Error&) {  // the pixel's rays are too many to be followed one by one
+        return describe_flags(flags);
+    }
+}
+
 std::unique_ptr<Renderer> make_renderer(Backend backend, const Scene& scene, const CudaOptions& options) {
     if (scene.moves()) return std::make_unique<MovingRenderer>(backend, scene, options);
     return make_still_renderer(backend, scene, options);

@@ -57,6 +57,11 @@ std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const C
 /// A renderer of a scene. One that keys change is compiled again, and goes to the devices whole, for each frame.
 std::unique_ptr<Renderer> make_renderer(Backend backend, const Scene& scene, const CudaOptions& options);
 
+/// The reason why a frame that the renderer made of the scene is unreliable, for a message: describe_flags, with the
+/// solids around one ray where they are too many. It renders parts of the frame again to find that ray.
+std::string describe_flags(uint32_t flags, Renderer& renderer, const SceneDescription& scene, Precision precision,
+                           const CameraFrame& camera, FrameSettings settings);
+
 /// Whether this build has the CUDA backend, independent of GPUs in this machine.
 bool has_cuda_backend();
 

@@ -41,7 +41,7 @@ class SequenceFiles {
         named_ = read;
         named_.insert(named_.end(), {request_.scene, request_.stats});
         require_different_named();
-        const std::string warning = look_ahead(frames_from(frames, 0, stretch_length));
+        std::string warning = look_ahead(frames_from(frames, 0, stretch_length));
         if (!request_.stats.empty()) {
             make_directory_of(request_.stats);
             const AtomicFile probe(request_.stats);

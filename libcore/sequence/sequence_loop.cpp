@@ -223,7 +223,8 @@ size_t render_and_write(const SequenceJob& job, Renderer& renderer, RenderProgre
                 writer.finish();
                 throw Error(ErrorKind::failed,
                             fmt::format("frame {} cannot be trusted and is not written: {}", camera.frame,
-                                        describe_flags(finished.film.flags, job.scene)))
+                                        describe_flags(finished.film.flags, renderer, job.scene, job.precision, camera,
+                                                       settings)))
                     .at(job.scene.source);
             }
             describe(finished, job, camera, seconds, renderer);

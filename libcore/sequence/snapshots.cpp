@@ -58,13 +58,13 @@ void Snapshots::write() {
                 "no snapshot: frame {} is on a GPU, which gives its pixels back when all are done", camera->frame));
         if (!part || part->fraction == 0)
             return job_.events.remark(fmt::format("no snapshot: no pixel of frame {} is done", camera->frame));
-        write(*camera, std::move(*part));
+        write(*camera, *part);
     } catch (const std::exception& error) {
         job_.events.remark(fmt::format("no snapshot: {}", failure_of(error, "it copies the frame").text));
     }
 }
 
-void Snapshots::write(const CameraFrame& camera, PartialFilm part) {
+void Snapshots::write(const CameraFrame& camera, const PartialFilm& part) {
     const std::string path = snapshot_of(job_.output, camera.frame);
     if (file_kind(path) == FileKind::raw) {
         write_raw_picture(path, to_color(part.film));

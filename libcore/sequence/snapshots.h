@@ -53,7 +53,7 @@ class Snapshots {
 
   private:
     void write();
-    void write(const CameraFrame& camera, PartialFilm part);
+    void write(const CameraFrame& camera, const PartialFilm& part);
 
     const SequenceJob& job_;
     SnapshotRequests& requests_;

@@ -68,7 +68,7 @@ std::shared_ptr<PixelReport> trace(const std::shared_ptr<SceneHandle>& scene, in
     run_interruptibly(stop, [&] {
         on_threads(request.threads, [&] {
             PixelTree tree = (*LentRenderer(scene, Backend::embree, {})).pixel_tree(camera, settings, x, y);
-            const std::string flaws = describe_flags(tree.film.flags, description);
+            const std::string flaws = describe_flags(tree.film.flags, tree.crowd);
             report = std::make_shared<PixelReport>(
                 PixelReport{x, y, scene->scene().precision(), description.source, scene->scene().at(frame).names(),
                             settings, camera, std::move(tree), scene->scene().hashes().of(frame), flaws});

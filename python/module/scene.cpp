@@ -50,6 +50,7 @@ class Frames {
         if (announced_ > 0) --announced_;
         auto image = std::make_unique<Image>();
         std::vector<std::string> notes;
+        std::string flaws;
         RenderProgress state;
         const double pixels = double(settings_.crop.width) * double(settings_.crop.height);
         const auto work = [&] {
@@ -63,11 +64,17 @@ class Frames {
                 image->seconds = seconds_of([&] { render_frame(renderer, camera, settings, image->film, state); });
                 image->times = renderer.times();
                 notes = renderer.notes();
+                if (!state.stop)
+                    flaws = describe_flags(image->film.flags, renderer, description, scene_->scene().precision(),
+                                           camera, settings);
             });
         };
         run_interruptibly(state.stop, work, [&] {
             if (progress) (*progress)(std::min(1.0, double(state.pixels_done) / pixels));
         });
+        if (!flaws.empty())
+            throw Error(ErrorKind::failed,
+                        fmt::format("{}: frame {} cannot be trusted: {}", description.source, camera.frame, flaws));
         finish(*image, camera);
         if (progress) (*progress)(1.0);
         add_totals(*image);
@@ -85,9 +92,6 @@ class Frames {
 
     void finish(Image& image, const CameraFrame& camera) const {
         const SceneDescription& description = scene_->description();
-        if (image.film.flags != 0)
-            throw Error(ErrorKind::failed, fmt::format("{}: frame {} cannot be trusted: {}", description.source,
-                                                       camera.frame, describe_flags(image.film.flags, description)));
         image.scene = scene_;
         image.settings = settings_;
         image.frame = camera.frame;

@@ -16,6 +16,11 @@ enum RenderFlag : uint32_t {
     flag_objects_overflow = 1u << 4,    // a pixel shows more objects than its table holds (layers.h)
 };
 
+/// Whether a film with these flags is no image, whatever is done with it.
+CISTULA_INLINE bool is_unreliable(uint32_t flags) {
+    return (flags & ~uint32_t(flag_objects_overflow)) != 0;
+}
+
 /// Ray counts of one pixel. 32 bits suffice: 2^32 rays would take hours.
 struct PixelRays {
     uint32_t primary = 0;

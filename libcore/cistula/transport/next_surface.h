@@ -33,7 +33,8 @@ class NextSurface {
         : scene_(scene), intersector_(intersector), depth_(depth), sums_(sums) {}
 
     /// Finds the branch's next surface. False if there is none: the visible light or background at the end of the ray
-    /// is then added, and `visible` is the light, if it was one.
+    /// is then added, and `visible` is the light, if it was one. A ray that is inside more solids than it can list ends
+    /// with its flag, and so does one that passes too many faces.
     CISTULA_INLINE bool find(Entry& branch, SurfaceEvent<Real, Media>& event, VisibleLightHit<Real>& visible) {
         Absorption<E::has(effect_absorption), Real> absorption;
         absorption.begin(scene_, branch.ray.media, branch.ray.after.t);
@@ -48,13 +49,19 @@ class NextSurface {
                 return false;
             }
             resolve_event<E>(scene_, intersector_, branch.ray, hit, event);
-            if (!event.fits) sums_.flag(flag_media_overflow);
+            if (!event.fits) {
+                sums_.flag(flag_media_overflow);
+                return false;
+            }
             if (!invisible(branch.ray, event)) {
                 absorption.dim(scene_, branch.ray.media, event.hit.t, branch.weight);
                 return true;
             }
             for (int i = 0; i < event.count; ++i) absorption.cross(scene_, event.taken[i].key, event.taken[i].t);
-            pass(branch.ray, event, absorption);
+            if (!pass(branch.ray, event, absorption)) {
+                sums_.flag(flag_media_overflow);
+                return false;
+            }
             if (crossings == largest_crossings) {
                 sums_.flag(flag_too_many_crossings);
                 return false;
@@ -62,14 +69,15 @@ class NextSurface {
         }
     }
 
-    /// Moves a ray straight on through a face.
+    /// Moves a ray straight on through a face; false if its media had no room.
     template <class Absorbed>
-    CISTULA_INLINE void pass(Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event, Absorbed& absorption) {
+    CISTULA_INLINE bool pass(Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event, Absorbed& absorption) {
         Media media = event.beyond;
         if constexpr (Media::meshes)
-            if (event.wrong_side) count_wrong_side(ray, event.taken[0], media, absorption);
+            if (event.wrong_side && !count_wrong_side(ray, event.taken[0], media, absorption)) return false;
         ray.media = media;
         ray.after = event.last();
+        return true;
     }
 
     /// The branches in lanes that meet a surface. `single`: those whose media lanes cannot hold; nothing was added for
@@ -98,7 +106,10 @@ class NextSurface {
             const MaskOf<Real> strays = resolve_event<E>(scene_, branch.ray, hit, left, next);
             single |= strays;
             left = left & !strays;
-            if (any(left & !next.fits)) sums_.flag(flag_media_overflow);
+            if (any(left & !next.fits)) {
+                sums_.flag(flag_media_overflow);
+                left = left & next.fits;
+            }
             const MaskOf<Real> passes = left & invisible(branch.ray, next);
             const MaskOf<Real> stops = left & !passes;
             absorption.dim(scene_, branch.ray.media, next.hit.t, branch.weight, stops);
@@ -124,17 +135,18 @@ class NextSurface {
     }
 
   private:
-    /// Adds refused crossings to the media. A ray's first crossing of a mesh is from the right side; others of the same
-    /// mesh that rounding puts before it, at a grazed edge, count as well once the ray goes straight on.
+    /// Adds refused crossings to the media; false if these had no room. A ray's first crossing of a mesh is from the
+    /// right side; others of the same mesh that rounding puts before it, at a grazed edge, count as well once the ray
+    /// goes straight on.
     template <class Absorbed>
-    CISTULA_INLINE void count_wrong_side(const Ray<Real, Media>& ray, const Crossing<Real>& crossing, Media& media,
+    CISTULA_INLINE bool count_wrong_side(const Ray<Real, Media>& ray, const Crossing<Real>& crossing, Media& media,
                                          Absorbed& absorption) {
         Ray<Real, Media> probe = ray;
         probe.accept_both_sides();
         for (;;) {
             const Hit<Real> next = unobserved(intersector_).closest(probe);
-            if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return;
-            if (!media.add(key_solid(next.key), media_change(key_kind(next.key)))) sums_.flag(flag_media_overflow);
+            if (!Crossing<Real>{next.t, next.key}.before(crossing.t, crossing.key)) return true;
+            if (!media.add(key_solid(next.key), media_change(key_kind(next.key)))) return false;
             absorption.cross(scene_, next.key, next.t);
             probe.after = {next.t, next.key};
         }

@@ -45,7 +45,7 @@ std::string attribute_line(const PicturePair& pair, const std::string& name, con
 }
 
 std::string type_text(const StoredChannel& channel) {
-    const std::string type(type_name(channel.type));
+    std::string type(type_name(channel.type));
     if (channel.x_sampling == 1 && channel.y_sampling == 1) return type;
     return fmt::format("{}, a value for {}x{} pixels", type, channel.x_sampling, channel.y_sampling);
 }

@@ -90,7 +90,7 @@ void read_settings(JsonObject& keys, SuiteCase& one) {
 
 std::string hash_in(const JsonValue& value) {
     const Json& json = value.json();
-    const std::string text = json.is_string() ? json.get<std::string>() : "";
+    std::string text = json.is_string() ? json.get<std::string>() : "";
     if (text.size() != 32 || text.find_first_not_of("0123456789abcdef") != text.npos)
         value.fail_expected("a hash: 32 of the characters 0 to 9 and a to f");
     return text;

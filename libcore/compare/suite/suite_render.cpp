@@ -38,14 +38,13 @@ SuiteFrame render_prepared(PreparedCase& prepared, int frame, RenderProgress& pr
     result.frame = frame;
     Film film;
     bool whole = false;
-    result.seconds = seconds_of([&] {
-        FrameSettings settings = prepared.settings;
-        whole = render_frame(*prepared.renderer, camera, settings, film, progress);
-    });
+    FrameSettings settings = prepared.settings;
+    result.seconds = seconds_of([&] { whole = render_frame(*prepared.renderer, camera, settings, film, progress); });
     if (!whole) throw Error(ErrorKind::interrupted, "interrupted");
     if (film.flags != 0)
-        throw Error(ErrorKind::failed,
-                    fmt::format("frame {} cannot be trusted: {}", frame, describe_flags(film.flags, prepared.scene)))
+        throw Error(ErrorKind::failed, fmt::format("frame {} cannot be trusted: {}", frame,
+                                                   describe_flags(film.flags, *prepared.renderer, prepared.scene,
+                                                                  prepared.precision, camera, settings)))
             .at(prepared.scene.source);
     uint64_t clamped = 0;
     LayeredPicture& picture = result.picture;

@@ -100,7 +100,7 @@ class CaseQueue {
 
     /// One backend that is there records a new golden image; all compare.
     std::vector<Backend> backends_for(const SuiteCase& one) const {
-        const std::vector<Backend> all = backends_of(one, options_);
+        std::vector<Backend> all = backends_of(one, options_);
         if (!options_.update || one.is_foreign()) return all;
         const auto first = std::find_if(all.begin(), all.end(), [&](Backend b) { return machine(b).obstacle.empty(); });
         return first == all.end() ? all : std::vector{*first};

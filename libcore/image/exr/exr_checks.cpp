@@ -227,7 +227,7 @@ void check_claim(const Imf::Header& header, const std::string& path) {
     if (header.compression() == Imf::NO_COMPRESSION) packing = 1;
     if (header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION)
         packing = 64 * 1032;
-    const Imath::Box2i window = header.dataWindow();
+    const Imath::Box2i& window = header.dataWindow();
     const double width = static_cast<double>(window.max.x) - window.min.x + 1;
     const double height = static_cast<double>(window.max.y) - window.min.y + 1;
     double bytes = 0;

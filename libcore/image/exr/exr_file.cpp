@@ -42,8 +42,8 @@ ExrPart part_of(const Imf::Header& header) {
     ExrPart part;
     if (header.hasName()) part.name = header.name();
     check_flat(header, part.name.empty() ? "it" : "part " + part.name);
-    const Imath::Box2i data = header.dataWindow();
-    const Imath::Box2i display = header.displayWindow();
+    const Imath::Box2i& data = header.dataWindow();
+    const Imath::Box2i& display = header.displayWindow();
     part.data = window_of(data);
     part.display = window_of(display);
     part.width = part.data.width;
@@ -171,14 +171,14 @@ Imath::Box2i read_level(Imf::MultiPartInputFile& file, int part, ExrLevel level,
     if (!has_levels(file.header(part))) {
         Imf::InputPart input(file, part);
         check_chunks(input);
-        const Imath::Box2i data = input.header().dataWindow();
+        Imath::Box2i data = input.header().dataWindow();
         input.setFrameBuffer(buffer(data));
         input.readPixels(data.min.y, data.max.y);
         return data;
     }
     Imf::TiledInputPart input(file, part);
     check_chunks(input);
-    const Imath::Box2i data = input.dataWindowForLevel(level.x, level.y);
+    Imath::Box2i data = input.dataWindowForLevel(level.x, level.y);
     input.setFrameBuffer(buffer(data));
     input.readTiles(0, input.numXTiles(level.x) - 1, 0, input.numYTiles(level.y) - 1, level.x, level.y);
     return data;

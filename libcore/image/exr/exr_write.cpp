@@ -32,6 +32,7 @@
 #include "base/atomic_file.h"
 #include "base/default_rounding.h"
 #include "image/exr/exr.h"
+#include "image/exr/exr_checks.h"
 #include "image/exr/exr_header.h"
 #include "image/exr/exr_zip.h"
 

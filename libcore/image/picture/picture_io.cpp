@@ -3,6 +3,7 @@
 #include <png.h>
 
 #include <cerrno>
+#include <cmath>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -38,7 +39,7 @@ std::string encode_png(const ColorPicture& linear) {
     pixels.reserve(4 * linear.texels.size());
     for (size_t i = 0; i < linear.texels.size(); ++i) {
         for (int c = 0; c < 3; ++c) pixels.push_back(srgb8_from_linear(linear.texels[i][c]));
-        if (!opaque) pixels.push_back(static_cast<uint8_t>(255 * linear.alpha[i] + 0.5f));
+        if (!opaque) pixels.push_back(static_cast<uint8_t>(std::lround(255 * linear.alpha[i])));
     }
     png_image image = {};
     image.version = PNG_IMAGE_VERSION;

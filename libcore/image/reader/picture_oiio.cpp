@@ -42,7 +42,7 @@ void limit_library(uint64_t texels) {
 
 /// Reads a subimage at a level, some rows at a time, so that the whole picture is never in memory here, but for formats
 /// that have it there. Says why that fails.
-bool read_rows(OIIO::ImageInput& input, int subimage, int level, int channels, OIIO::TypeDesc format,
+bool read_rows(OIIO::ImageInput& input, int subimage, int level, int channels, const OIIO::TypeDesc& format,
                const OiioHost& host) {
     const OIIO::ImageSpec spec = input.spec();
     const size_t texel = static_cast<size_t>(channels) * format.size();
@@ -112,7 +112,7 @@ constexpr SampleType texture_types[] = {
 
 /// The entry for a file's type; null for what is not read.
 template <size_t count>
-const SampleType* sample_type(const SampleType (&types)[count], OIIO::TypeDesc format) {
+const SampleType* sample_type(const SampleType (&types)[count], const OIIO::TypeDesc& format) {
     for (const SampleType& type : types)
         if (type.file == format.basetype) return &type;
     return nullptr;

@@ -70,10 +70,10 @@ std::string program_in(const fs::path& directory) {
 
 std::string reader_path(const std::string& users) {
     for (const fs::path& directory : library_directories())
-        if (const std::string found = program_in(directory); !found.empty()) return found;
+        if (std::string found = program_in(directory); !found.empty()) return found;
     std::string places = "the library path";
     for (const fs::path& directory : directories_beside()) {
-        if (const std::string found = program_in(directory); !found.empty()) return found;
+        if (std::string found = program_in(directory); !found.empty()) return found;
         places += ", " + directory.string();
     }
     throw std::runtime_error(users + " need the program " CISTULA_READ_PICTURE ", which is not found on " + places +

@@ -1,6 +1,7 @@
 #include "image/reader/oiio_module.h"
 
 #include <OpenImageIO/color.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
@@ -43,7 +44,7 @@ std::vector<NamedView> views_of(const OIIO::ColorConfig& config) {
     std::stable_partition(displays.begin(), displays.end(), [&](const std::string& name) { return name == first; });
     for (const std::string& display : displays)
         for (const std::string& view : config.getViewNames(display))
-            views.push_back({display == first ? view : view + " (" + display + ")", display, view});
+            views.push_back({display == first ? view : fmt::format("{} ({})", view, display), display, view});
     return views;
 }
 

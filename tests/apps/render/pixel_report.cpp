@@ -461,8 +461,43 @@ TEST_F(PixelReports, FailWhereThePixelCannotBeTrusted) {
               std::string::npos)
         << result.error;
     EXPECT_NE(result.out.find("meets shell 0"), std::string::npos);
-    EXPECT_TRUE(json::parse(run({"n.json", "--pixel", "20,11", "--depth", "12", "--json", "-"}).out)
-                    .contains("cannot_be_trusted"));
+    const json report = json::parse(run({"n.json", "--pixel", "20,11", "--depth", "12", "--json", "-"}).out);
+    EXPECT_TRUE(report.contains("cannot_be_trusted"));
+    EXPECT_NE(report.dump().find("\"dropped\""), std::string::npos) << "the ray goes on";
+}
+
+/// A film of two nests of glass shells, which lie behind one another at frame 0. From frame 1 on they lie apart; at
+/// frame 3 the second nest is in the first, and their bodies are too many for one ray. A third nest is never seen.
+TEST_F(PixelReports, NameTheSolidsOfOneRayThatIsInsideTooMany) {
+    std::string objects;
+    const auto add = [&](const std::string& name, double radius, const std::string& center) {
+        objects += fmt::format(R"({}{{"name": "{}", "solid": "sphere", "radius": {}, "center": {}, "material": "g"}})",
+                               objects.empty() ? "" : ", ", name, radius, center);
+    };
+    for (int i = 0; i < 5; ++i) add(fmt::format("outer {}", i), 1 - 0.1 * i, "[0, 0, 0]");
+    for (int i = 0; i < 5; ++i)
+        add(fmt::format("inner {}", i), 0.5 - 0.05 * i,
+            R"({"keys": [[0, [0, 9, 0]], [1, [5, 9, 0]], [3, [0, 0, 0]]]})");
+    for (int i = 0; i < 10; ++i) add(fmt::format("unseen {}", i), 1 - 0.05 * i, "[0, -40, 0]");
+    put_bytes(file("f.json"), fmt::format(R"({{"film": {{"width": 24, "height": 16}}, "depth": 6, "background": 1,
+                  "camera": {{"position": [0, -4, 0.2], "target": [0, 0, 0], "fov": 40}},
+                  "materials": {{"g": {{"transmission": 0.9, "index": 1.1}}}}, "objects": [{}]}})",
+                                          objects));
+    const ProgramResult early = run({"f.json", "-q", "-o", "f#.exr", "--frames", "0-2"});
+    EXPECT_EQ(early.code, 0) << early.error;
+    for (const char* lanes : {"1", "16"})
+        for (const std::vector<std::string>& more :
+             {std::vector<std::string>{}, {"--target-error", "0.05"}, {"--precision", "double"}}) {
+            std::vector<std::string> arguments = {"f.json", "-q", "-o", "f#.exr", "--frames", "3", "--lanes", lanes};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            const ProgramResult result = run(arguments);
+            EXPECT_EQ(result.code, 1);
+            EXPECT_NE(result.error.find("frame 3 cannot be trusted and is not written: a ray was inside more than 8 "
+                                        "solids at once, which is all it can list: outer 0, outer 1, outer 2, outer "
+                                        "3, outer 4, inner 0, inner 1, inner 2, inner 3; take some away"),
+                      std::string::npos)
+                << result.error;
+        }
 }
 
 /// Memory for trees has a bound.

@@ -45,13 +45,6 @@ class OverlapSearch {
         return overlaps;
     }
 
-    std::vector<uint32_t> nested() {
-        for_each_common_box(
-            [&](uint32_t, uint32_t, const Box& box) { look_through(box, [&] { return !nested_.empty(); }); });
-        std::sort(nested_.begin(), nested_.end());
-        return std::move(nested_);
-    }
-
   private:
     struct Body {
         uint32_t solid;
@@ -106,11 +99,7 @@ class OverlapSearch {
             if (!hit.found()) return;
             if (double(hit.t) - double(ray.after.t) > least_) note(ray.media);
             const int change = media_change(key_kind(hit.key));
-            if (change != 0 && !ray.media.add(key_solid(hit.key), change)) {
-                ray.media.for_each([&](uint32_t solid, int) { nested_.push_back(solid); });
-                nested_.push_back(key_solid(hit.key));
-                return;
-            }
+            if (change != 0 && !ray.media.add(key_solid(hit.key), change)) return;
             ray.after = {hit.t, hit.key};
         }
     }
@@ -130,7 +119,6 @@ class OverlapSearch {
     const double least_;
     std::vector<Body> bodies_;
     std::set<std::pair<uint32_t, uint32_t>> found_;
-    std::vector<uint32_t> nested_;
 };
 
 }  // namespace
@@ -140,14 +128,7 @@ std::vector<Overlap> find_overlaps(const CompiledScene<Real>& scene) {
     return in_default_rounding([&] { return OverlapSearch<Real>(scene).overlaps(); });
 }
 
-template <class Real>
-std::vector<uint32_t> find_nested(const CompiledScene<Real>& scene) {
-    return in_default_rounding([&] { return OverlapSearch<Real>(scene).nested(); });
-}
-
 template std::vector<Overlap> find_overlaps(const CompiledScene<float>&);
 template std::vector<Overlap> find_overlaps(const CompiledScene<double>&);
-template std::vector<uint32_t> find_nested(const CompiledScene<float>&);
-template std::vector<uint32_t> find_nested(const CompiledScene<double>&);
 
 }  // namespace cistula

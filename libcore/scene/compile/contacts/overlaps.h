@@ -1,5 +1,4 @@
-// Bodies that are in one another: transparent ones, of which the later in the file fills the common space, and more
-// than a ray can list (docs/rules.md, 4).
+// Transparent bodies that are in one another, of which the later in the file fills the common space (docs/rules.md, 4).
 #pragma once
 
 #include <vector>
@@ -17,10 +16,5 @@ struct Overlap {
 /// 64 along each axis. Bodies that only touch do not. Of very many pairs the first are looked at.
 template <class Real>
 std::vector<Overlap> find_overlaps(const CompiledScene<Real>& scene);
-
-/// Solids that are in one another and are more than an InteriorList holds, found on such lines; empty if none are
-/// found.
-template <class Real>
-std::vector<uint32_t> find_nested(const CompiledScene<Real>& scene);
 
 }  // namespace cistula

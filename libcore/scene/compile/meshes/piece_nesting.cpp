@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <numeric>
 
@@ -224,7 +225,7 @@ class Nesting {
                 for (int axis = 0; axis < 3; ++axis) {
                     const double at = (vertices_[v][axis] - box_.low[axis]) * steps;
                     points_[v][static_cast<size_t>(axis)] =
-                        at >= 0 && at <= grid_steps ? 2 * static_cast<int64_t>(at + 0.5) : 0;  // else no piece's vertex
+                        at >= 0 && at <= grid_steps ? 2 * std::llround(at) : 0;  // else no piece's vertex
                 }
         });
         tbb::parallel_for(uint32_t(0), static_cast<uint32_t>(pieces_.size()), [&](uint32_t i) {

@@ -100,8 +100,9 @@ template <class Functor>
 void plan_twenty(Plan& plan) {
     for (const Shape shape : {Shape::planes, Shape::triangles}) {
         SceneDescription scene = empty_scene();
-        for (int k = 0; k < 20; ++k)
-            add_solid(scene, shape, solid_object(platonic_solids[k % 5], {k % 5 - 2.0, k / 5 - 2.0, 0}, 0.7));
+        for (int row = 0; row < 4; ++row)
+            for (int k = 0; k < 5; ++k)
+                add_solid(scene, shape, solid_object(platonic_solids[k], {k - 2.0, row - 2.0, 0}, 0.7));
         add_light(scene, {0, 0, 3});
         plan.add(std::string("20 solids") + shape_name(shape), scene, Functor{}, {{0, 0, 0}},
                  plan.rays(1'000'000, 20000));
@@ -351,9 +352,11 @@ void plan_random(Plan& plan) {
     add("many solids", many);
     SceneDescription touching = empty_scene();
     const double side = 2 / std::sqrt(3.0);
-    for (int k = 0; k < 27; ++k)
-        add_solid(touching, k % 2 ? Shape::planes : Shape::triangles,
-                  solid_object(PlatonicSolid::cube, {side * (k % 3), side * (k / 3 % 3), side * (k / 9)}));
+    for (int z = 0; z < 3; ++z)
+        for (int y = 0; y < 3; ++y)
+            for (int x = 0; x < 3; ++x)
+                add_solid(touching, (x + y + z) % 2 ? Shape::planes : Shape::triangles,
+                          solid_object(PlatonicSolid::cube, {side * x, side * y, side * z}));
     add_object(touching, parallelogram({-2, -2, -1}, {6, 0, 0}, {0, 6, 0}));
     add("touching cubes", touching);
     SceneDescription round = empty_scene();  // touching, nested, equal and cut; planes without end through them

@@ -96,7 +96,8 @@ void on_half_plane(Stage& stage, Tally& tally) {
         SampleLine line{between(-5, 5), between(-5, 5), 0};
         if (line.a == 0 && line.b == 0) line.a = 1;
         // Halves: no sample is nearer than 1/15 of a step, and rounding of corners and rays is below 1/1000 of one.
-        line.c = between(-5 * width * k, 5 * width * k) / 2 + 0.5;
+        const int whole = between(-5 * width * k, 5 * width * k) / 2;
+        line.c = whole + 0.5;
         const Film film = stage.render(half_plane(line, width * k, false), frame_of(width, height, k));
         for_each_pixel(film, [&](size_t i, int x, int y) {
             uint32_t inside = 0;

@@ -268,10 +268,11 @@ void visible_light_pixels(Stage& stage, Tally& tally) {
     scene.background = glm::dvec3(0.03125, 0, 0);
     add_solid(scene, Shape::planes, solid);
     for (uint32_t k = 0; k < 4096; ++k) {
-        LightDescription& light = add_light(scene, {(k % 64) / 16.0 - 2, k % 3 * 0.125, (k / 64) / 16.0 - 2});
+        const uint32_t row = k / 64;
+        LightDescription& light = add_light(scene, {(k % 64) / 16.0 - 2, k % 3 * 0.125, row / 16.0 - 2});
         light.color = glm::dvec3(0);
         light.radius = 0.025;
-        light.glow = glm::dvec3(0.125 + (k % 64) / 64.0, 0.125 + (k / 64) / 64.0, 0.25);
+        light.glow = glm::dvec3(0.125 + (k % 64) / 64.0, 0.125 + row / 64.0, 0.25);
     }
     const Film film = stage.render(scene, width, height);
     Numbers planes;
