@@ -126,6 +126,8 @@ template <class Change>
 void for_each_point(SceneDescription& scene, const Change& change) {
     for (ObjectDescription& object : scene.objects) {
         if (auto* solid = std::get_if<SolidObject>(&object.shape)) change(solid->center);
+        if (auto* ball = std::get_if<SphereObject>(&object.shape)) change(ball->center);
+        if (auto* disk = std::get_if<DiskObject>(&object.shape)) change(disk->center);
         if (auto* mesh = std::get_if<TrianglesObject>(&object.shape))
             for (glm::dvec3& p : mesh->vertices) change(p);
     }

@@ -45,19 +45,20 @@ std::shared_ptr<const Polyhedron> other_body(size_t number) {
     return bodies[number % std::size(bodies)];
 }
 
-using Shape = decltype(ObjectDescription::shape);
-
 /// Adds a floor, walls and sheets, then groups of closed bodies, with their materials.
-class Objects : Part {
+class Objects : ObjectMaker {
   public:
-    using Part::Part;
+    using ObjectMaker::ObjectMaker;
 
     void add_surroundings() {
-        if (random_.chance(0.65))
-            add(quad_triangles(
-                    {dvec3{-5, -5, floor_height}, {5, -5, floor_height}, {5, 5, floor_height}, {-5, 5, floor_height}}),
-                false);
-        if (random_.chance(0.2)) add(quad_triangles({dvec3{-4, 4, -1}, {4, 4, -1}, {4, 5, 4}, {-4, 5, 4}}), false);
+        if (random_.chance(0.65)) add_floor();
+        if (random_.chance(0.2)) {
+            if (bodies_ == Bodies::all && random_.chance(0.5))
+                add(DiskObject::plane({0, -5, 1}, -21), false);
+            else
+                add(quad_triangles({dvec3{-4, 4, -1}, {4, 4, -1}, {4, 5, 4}, {-4, 5, 4}}), false);
+        }
+        if (bodies_ == Bodies::balls) return;
         const double sheets = random_.unit();
         if (sheets < 0.08) {
             const auto count = static_cast<uint32_t>(random_.of({8, 40, 300}));
@@ -80,21 +81,24 @@ class Objects : Part {
     }
 
     void add_groups() {
-        if (random_.chance(0.25)) return add_apart();
+        if (random_.chance(0.17)) return add_apart();
         const dvec3 places[] = {{-1.7, -1, 0}, {1.7, -1, 0}, {0, 1.9, 0}};
-        const uint32_t count = 1 + random_.below(3);
+        const auto count = static_cast<uint32_t>(random_.of({1, 2, 3, 3, 3}));
         const uint32_t first = random_.below(3);
-        const bool mixed = random_.chance(0.4);
-        uint32_t theme = random_.below(10);
+        const bool mixed = random_.chance(0.6);
+        uint32_t theme = random_.below(12);
+        const bool flat = bodies_ == Bodies::flat;
         for (uint32_t i = 0; i < count; ++i) {
             const dvec3 center = count == 1 ? dvec3(0) : places[(first + i) % 3];
             centers_.push_back(center);
-            if (mixed) theme = random_.below(10);
-            if (theme < 3)
+            if (mixed) theme = random_.below(12);
+            if (bodies_ == Bodies::balls || (!flat && random_.chance(0.55)))
+                add_round_group(state_, center);
+            else if (theme < 3)
                 add_nested(center);
-            else if (theme < 7)
+            else if (theme < 10 && palette_ == Palette::everything)  // lesser masks know no contacts
                 add_touching(center);
-            else if (theme < 8)
+            else if (theme < 11)
                 add_overlapping(center);
             else
                 add(closed_mesh(center, random_.between(0.8, 1.1)), true);
@@ -102,47 +106,24 @@ class Objects : Part {
     }
 
   private:
-    void add(Shape shape, bool see_through) {
-        bool textured = false;
-        if (auto* triangles = std::get_if<TrianglesObject>(&shape)) {
-            if (triangles->uvs.empty() && random_.chance(0.4))
-                for (const dvec3& p : triangles->vertices) triangles->uvs.emplace_back(p.x, p.y + 0.5 * p.z);
-            textured = !triangles->uvs.empty();
-            if (scene_.objects.size() % 5 == 3) triangles->keep_triangles = false;  // convex ones are given by planes
-            if (scene_.objects.size() % 4 == 2) triangles->smooth = 100;
-        } else if (auto* solid = std::get_if<SolidObject>(&shape)) {
-            if (edge_lights_left_ > 0 && random_.chance(0.15) && !heavy_) add_edge_lights(solid->edge_lights);
-        }
-        ObjectDescription object;
-        object.name = "object " + std::to_string(scene_.objects.size());
-        object.material =
-            reused_ >= 0 && !textured && random_.chance(0.2) ? reused_ : add_material(see_through, textured);
-        if (scene_.materials[static_cast<size_t>(object.material)].texture < 0) reused_ = object.material;
-        object.shape = std::move(shape);
-        scene_.objects.push_back(std::move(object));
+    void add_floor() {
+        const uint32_t kind = bodies_ == Bodies::all ? random_.below(3) : 0;
+        const double h = floor_height;
+        if (kind == 0)
+            add(quad_triangles({dvec3{-5, -5, h}, {5, -5, h}, {5, 5, h}, {-5, 5, h}}), false);
+        else if (kind == 1)
+            add(DiskObject::plane({0, 0, 1}, h), false);
+        else
+            add(DiskObject{.center = {0.5, 0, h}, .radius = 4.5}, false);
     }
 
-    /// Adds a solid as planes or as a mesh.
-    void add_of(bool planes, const SolidObject& solid) {
-        add(planes ? Shape(solid) : Shape(triangulated_solid(solid)), true);
-    }
-
-    void add_edge_lights(EdgeLights& lights) {
-        --edge_lights_left_;
-        lights.count = 1 + static_cast<int>(random_.below(2));
-        lights.color = random_.chance(0.15) ? dvec3(0) : random_.color_times({0.05, 0.2});
-        if (palette_ < Palette::lights || random_.chance(0.2)) return;
-        lights.radius = random_.of({0.02, 0.06});
-        if (random_.chance(0.6)) lights.glow = random_.color();
-        lights.falloff = random_.chance(0.4);
-    }
-
-    /// Adds convex solids that do not touch, in a grid: sometimes more than the plain loop takes, sometimes fewer.
+    /// Adds convex solids in a grid, sometimes more than the plain loop takes, sometimes fewer; only balls may touch.
     void add_apart() {
-        const uint32_t nx = 2 + random_.below(3);
+        const uint32_t nx = 1 + random_.below(4);
         const uint32_t ny = 1 + random_.below(3);
         const uint32_t nz = 1 + random_.below(2);
         const bool lattice = random_.chance(0.3);
+        const bool touching = lattice && random_.chance(0.5);
         reach_ = 0.6;
         for (uint32_t x = 0; x < nx; ++x)
             for (uint32_t y = 0; y < ny; ++y)
@@ -151,9 +132,11 @@ class Objects : Part {
                     if (!lattice) center += random_.in_cube(0.1);
                     SolidObject s = solid(center, random_.between(0.2, 0.52));
                     if (scene_.objects.size() % 3 == 2) s.body = other_body(scene_.objects.size() / 3);
+                    const bool is_ball = bodies_ != Bodies::flat && random_.chance(0.6);
+                    if (is_ball && touching) s.radius = 0.65;
                     cores_.push_back({s.center, s.radius});
                     centers_.push_back(s.center);
-                    add(s, true);
+                    add(is_ball ? Shape(ball(s.center, s.radius)) : Shape(s), true);
                 }
     }
 
@@ -166,6 +149,9 @@ class Objects : Part {
             if (const auto* s = std::get_if<SolidObject>(&shape)) {
                 cores_.push_back({at, radius});
                 radius *= 0.95 * polyhedron_of(*s).inradius;
+            } else if (std::holds_alternative<SphereObject>(shape)) {
+                cores_.push_back({at, radius});
+                radius *= 0.9;
             } else {
                 radius *= 0.45;
             }
@@ -183,8 +169,10 @@ class Objects : Part {
     }
 
     void add_touching(const dvec3& center) {
-        switch (random_.below(7)) {
-            case 0: {  // a row of cubes, cut along one diagonal or the other
+        switch (random_.below(12)) {
+            case 0:
+            case 9:
+            case 11: {  // a row of cubes, cut along one diagonal or the other
                 const dvec3 turn = degrees();
                 const double radius = 0.6;
                 const double step = 2 * radius * platonic_shape(PlatonicSolid::cube).inradius;
@@ -198,18 +186,21 @@ class Objects : Part {
                 break;
             }
             case 1:
-            case 2: {  // a solid and its mirror image beyond a face
+            case 2:
+            case 8:
+            case 10: {  // a solid and its mirror image beyond a face
                 const SolidObject s = solid(center, 0.7);
                 const auto& faces = platonic_shape(s.solid).faces;
                 TrianglesObject twin = beyond_face(s, faces[random_.below(static_cast<uint32_t>(faces.size()))]);
-                const bool planes = random_.chance(0.5);
+                const bool planes = random_.chance(0.3);
                 const bool twin_first = random_.chance(0.5);
                 if (twin_first) add(twin, true);
                 add_of(planes, s);
                 if (!twin_first) add(std::move(twin), true);
                 break;
             }
-            case 3: {  // two solids in the same place
+            case 3:
+            case 7: {  // two solids in the same place
                 const SolidObject s = solid(center, 0.9);
                 add(s, true);
                 add_of(random_.chance(0.5), s);
@@ -246,104 +237,7 @@ class Objects : Part {
         }
     }
 
-    // ---- materials
-
-    int texture() {
-        TextureDescription t;
-        t.name = "texture " + std::to_string(scene_.textures.size());
-        t.checker = {random_.color(), random_.chance(0.3) ? dvec3(0) : random_.color()};
-        t.repeat = {random_.of({1, 2, 5.5}), random_.of({1, 3, 0.7})};
-        const bool picture = random_.chance(0.5);
-        const bool marble = random_.chance(0.5);
-        t.bilinear = random_.chance(0.6);
-        const size_t number = scene_.textures.size();
-        t.wrap = {TextureWrap(number % 3), TextureWrap(number / 2 % 3)};
-        if (picture && !files_.empty()) t.file = files_ + (marble ? "/marble.data" : "/floor.data");
-        scene_.textures.push_back(t);
-        return static_cast<int>(scene_.textures.size()) - 1;
-    }
-
-    dvec3 tint() {
-        dvec3 t = random_.color();
-        for (int c = 0; c < 3; ++c)
-            if (random_.chance(0.15)) t[c] = random_.chance(0.5) ? 0 : 1;
-        return t;
-    }
-
-    void share_out(MaterialDescription& m, bool see_through) {
-        const uint32_t kind = see_through && random_.chance(0.8) ? 3 + random_.below(6) : random_.below(9);
-        switch (kind) {
-            case 0:
-                break;  // opaque
-            case 1:
-                m.reflection = random_.between(0.1, 0.9);
-                break;
-            case 2:
-                m.reflection = 1;
-                break;
-            case 3:
-                m.transmission = 1;  // clear
-                break;
-            case 4:
-                m.transmission = 1;
-                m.tint = tint();
-                break;
-            case 5:
-                m.reflection = random_.of({0.25, 0.1, 0.3});
-                m.transmission = 1 - m.reflection;
-                m.tint = random_.chance(0.5) ? dvec3(1) : tint();
-                break;
-            case 6:
-                m.reflection = 0.3;
-                m.transmission = 0.7000005;  // a little above 1 is let pass
-                break;
-            case 7:
-                m.transmission = random_.between(0.2, 0.9);
-                m.tint = tint();
-                break;
-            default:
-                m.reflection = random_.between(0.05, 0.3);
-                m.transmission = random_.between(0.4, 0.7);
-                m.tint = tint();
-        }
-    }
-
-    /// Adds a material and returns its number; it may be required to transmit light more often than not, or to have a
-    /// texture.
-    int add_material(bool see_through, bool textured) {
-        MaterialDescription m;
-        m.name = "material " + std::to_string(scene_.materials.size());
-        m.color = random_.color();
-        m.ambient = random_.of({0, 0.3, 1, 1});
-        m.diffuse = random_.of({0, 0.5, 0.8, 1});
-        m.specular = random_.of({0, 0, 0.4, 1});
-        if (random_.chance(0.3)) m.specular_color = random_.color();
-        m.exponent = random_.of({0, 1, 2, 5, 50, 110, 1024, 1025, 0.5, 2.5, 37.3, 4000.25});
-        if (textured && random_.chance(0.6)) m.texture = texture();
-        if (palette_ != Palette::plain) share_out(m, see_through);
-        if (palette_ == Palette::everything) {
-            m.index = random_.of({1, 1, 1.000001, 1.33, 1.5, 1.5, 2.4, 0.75, 0.5});
-            m.fresnel = random_.chance(0.4);
-            const double strength = random_.of({0.2, 1, 10});
-            if (random_.chance(0.4)) m.absorption = strength * tint();
-        }
-        scene_.materials.push_back(m);
-        return static_cast<int>(scene_.materials.size()) - 1;
-    }
-
     // ---- shapes
-
-    dvec3 degrees() {
-        const double kind = random_.unit();
-        if (kind < 0.25) return dvec3(0);
-        if (kind < 0.45) return {random_.of({0, 90, 180}), random_.of({0, 90, 270}), random_.of({0, 45, -90})};
-        return random_.in_cube(180);
-    }
-
-    SolidObject solid(const dvec3& center, double radius) {
-        const auto kind = static_cast<PlatonicSolid>(random_.below(5));
-        return {.solid = kind, .center = center, .radius = radius, .rotation = degrees()};
-    }
 
     Shape closed_mesh(const dvec3& center, double radius) {
         const dvec3 turn = degrees();
@@ -374,12 +268,10 @@ class Objects : Part {
     }
 
     Shape closed(const dvec3& center, double radius) {
+        if (bodies_ == Bodies::all && random_.chance(0.3)) return ball(center, radius);
         if (random_.chance(0.65)) return solid(center, radius);
         return closed_mesh(center, radius);
     }
-
-    int reused_ = -1;           // a material without a texture
-    int edge_lights_left_ = 2;  // solids that may still get edge lights
 };
 
 }  // namespace

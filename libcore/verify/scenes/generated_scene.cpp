@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "image/reader/picture_reader.h"
 #include "render/renderer.h"
 #include "scene/compile/scene_normalization.h"
 #include "scene/description/platonic.h"
@@ -19,11 +20,16 @@ class Maker : Part {
     explicit Maker(State& state) : Part(state), state_(state) {}
 
     void make() {
-        const double kind = random_.unit();
-        state_.palette = kind < 0.12   ? Palette::plain
-                         : kind < 0.27 ? Palette::mirrors
-                         : kind < 0.43 ? Palette::lights
-                                       : Palette::everything;
+        const double palette = random_.unit();
+        state_.palette = palette < 0.08   ? Palette::opaque
+                         : palette < 0.15 ? Palette::mirrors
+                         : palette < 0.22 ? Palette::clear
+                         : palette < 0.34 ? Palette::lights
+                                          : Palette::everything;
+        const double bodies = random_.unit();
+        state_.bodies = bodies < (palette_ == Palette::everything ? 0.4 : 0.7) ? Bodies::flat
+                        : bodies < 0.86                                        ? Bodies::all
+                                                                               : Bodies::balls;
         add_objects(state_);
         if (random_.chance(0.2))
             std::reverse(scene_.objects.begin(), scene_.objects.end());  // reverses the priority of media
@@ -32,6 +38,7 @@ class Maker : Part {
         set_frame();
         set_film();
         for (size_t i = 0; i < scene_.objects.size(); ++i) scene_.objects[i].place = "/objects/" + std::to_string(i);
+        if (random_.chance(bodies_ == Bodies::flat ? 0.1 : 0.5)) set_keys(state_, unit_);
     }
 
   private:
@@ -46,12 +53,13 @@ class Maker : Part {
     }
 
     dvec3 light_position() {
-        const uint32_t kind = random_.below(10);
+        const uint32_t kind = random_.below(12);
         if (kind < 2 && !cores_.empty()) {
             const Core& core = cores_[random_.below(static_cast<uint32_t>(cores_.size()))];
             const double off = random_.of({0, 0.15}) * core.radius;
             return core.center + off * random_.direction();
         }
+        if (palette_ < Palette::lights) return far_position();  // lesser masks know no lights on faces
         if (kind < 4)
             if (const SolidObject* s = any_shape<SolidObject>()) {
                 const Polyhedron& shape = polyhedron_of(*s);
@@ -67,19 +75,40 @@ class Maker : Part {
                 const dvec3 on_edge = a + random_.of({0, 0.5, 0.3}) * (b - a);
                 return random_.chance(0.7) ? on_edge : on_edge + 0.4 * (c - on_edge);
             }
+        if (kind < 8)
+            if (const DiskObject* disk = any_shape<DiskObject>()) {
+                const dvec3 across = normalized(cross(disk->normal, random_.direction()));
+                const double off = random_.of({0, 0.5, 1});
+                return disk->center + (disk->is_endless() ? 2 * off : off * disk->radius) * across;
+            }
+        return far_position();
+    }
+
+    dvec3 far_position() {
         const dvec3 up = random_.direction();
         return random_.between(2.5, 6) * dvec3(up.x, up.y, magnitude(up.z));
+    }
+
+    /// The position, or one farther inside where it lies on a ball, which no light may.
+    dvec3 off_balls(dvec3 position) {
+        for (const ObjectDescription& object : scene_.objects)
+            if (const auto* ball = std::get_if<SphereObject>(&object.shape)) {
+                const dvec3 from_center = position - ball->center;
+                if (magnitude(length(from_center) - ball->radius) < 0.001 * ball->radius)
+                    position = ball->center + 0.9375 * from_center;
+            }
+        return position;
     }
 
     void add_lights() {
         const auto count = static_cast<uint32_t>(random_.of({0, 1, 1, 2, 2, 3}));
         for (uint32_t i = 0; i < count; ++i) {
             LightDescription light;
-            light.position = light_position();
+            light.position = off_balls(light_position());
             light.color = random_.chance(0.12) ? dvec3(0) : random_.color_times({0.3, 1, 2});
             if (palette_ >= Palette::lights && random_.chance(0.6)) {
                 light.radius = random_.of({0.05, 0.2, 0.5});
-                light.falloff = random_.chance(0.5);
+                light.falloff = palette_ == Palette::everything && random_.chance(0.6);
                 if (random_.chance(0.5)) light.glow = 2.0 * random_.color();
             }
             light.place = "/lights/" + std::to_string(i);
@@ -87,10 +116,27 @@ class Maker : Part {
         }
         scene_.ambient = 0.6 * random_.color();
         if (random_.chance(0.88)) scene_.background = 0.7 * random_.color();
-        const dvec3& around = scene_.background;
-        if (around.x > around.y && around.x > around.z)  // a third of these, without another draw
-            scene_.sky = SkyDescription{.axis = around, .stops = {{20, around}, {80, 0.5 * around}, {80, dvec3(0.1)}}};
+        if ((bodies_ != Bodies::flat || palette_ == Palette::everything) && random_.chance(0.35)) add_sky();
         if (count > 0 && random_.chance(0.15)) scene_.ambient = dvec3(0);
+    }
+
+    /// Puts a gradient or a picture in place of the background.
+    void add_sky() {
+        const dvec3 around = std::exchange(scene_.background, dvec3(0));
+        if (random_.chance(0.6)) {
+            scene_.sky = SkyDescription{.axis = random_.direction(),
+                                        .stops = {{20, around}, {80, 0.5 * around}, {80, dvec3(0.1)}}};
+            return;
+        }
+        auto texels = std::make_shared<TexelArray>(TexelArray{.width = 8, .height = 4, .values = {}});
+        auto& values = texels->values.emplace<std::vector<float>>();
+        for (int i = 0; i < 8 * 4 * 3; ++i) values.push_back(static_cast<float>(random_.unit()));
+        scene_.sky = SkyDescription{.texture = static_cast<int>(scene_.textures.size()),
+                                    .rotation = random_.in_cube(180),
+                                    .scale = random_.of({0.5, 1})};
+        TextureDescription picture{.name = "sky", .texels = std::move(texels)};
+        picture.bilinear = random_.chance(0.6);
+        scene_.textures.push_back(std::move(picture));
     }
 
     // ---- camera, frame and film
@@ -139,6 +185,7 @@ class Maker : Part {
         if (scene_.camera.position_path) offset = dvec3(0);  // camera paths are around the origin
         const bool pinned = random_.chance(0.12);
         const bool bound = random_.chance(0.5);
+        unit_ = scale;
         if (scale != 1 || offset != dvec3(0)) move(scale, offset);
         if (!pinned) return;
         FrameOfReference frame;
@@ -160,6 +207,13 @@ class Maker : Part {
                 point(s->center);
                 s->radius *= scale;
                 light(s->edge_lights.color, s->edge_lights.radius, s->edge_lights.falloff);
+            } else if (auto* ball = std::get_if<SphereObject>(&object.shape)) {
+                point(ball->center);
+                ball->radius *= scale;
+            } else if (auto* disk = std::get_if<DiskObject>(&object.shape)) {
+                point(disk->center);
+                disk->radius *= scale;
+                if (disk->is_endless()) *disk = DiskObject::plane(disk->normal, dot(disk->normal, disk->center));
             } else if (auto* triangles = std::get_if<TrianglesObject>(&object.shape)) {
                 for (dvec3& p : triangles->vertices) point(p);
             } else {
@@ -196,6 +250,7 @@ class Maker : Part {
     }
 
     State& state_;
+    double unit_ = 1;  // a length of 1 before the scene was moved
 };
 
 }  // namespace

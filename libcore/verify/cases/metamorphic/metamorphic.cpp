@@ -196,11 +196,14 @@ void scale_scene(SceneDescription& scene, int k) {
         light.color *= s * s;
     };
     for_each_point(scene, [=](glm::dvec3& p) { p *= s; });
-    for (ObjectDescription& object : scene.objects)
+    for (ObjectDescription& object : scene.objects) {
+        if (auto* ball = std::get_if<SphereObject>(&object.shape)) ball->radius *= s;
+        if (auto* disk = std::get_if<DiskObject>(&object.shape)) disk->radius *= s;
         if (auto* solid = std::get_if<SolidObject>(&object.shape)) {
             solid->radius *= s;
             scale_light(solid->edge_lights);
         }
+    }
     for (LightDescription& light : scene.lights) scale_light(light);
     for (MaterialDescription& m : scene.materials) m.absorption /= s;
     for (auto* path : {&scene.camera.position_path, &scene.camera.target_path})
@@ -209,6 +212,15 @@ void scale_scene(SceneDescription& scene, int k) {
     if (!scene.frame) return;
     scene.frame->center *= s;
     scene.frame->scale -= k;
+}
+
+/// Whether a scene has disks, or planes without end, of which a condition holds.
+template <class Condition>
+bool has_disks(const SceneDescription& scene, const Condition& holds) {
+    return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const ObjectDescription& object) {
+        const auto* disk = std::get_if<DiskObject>(&object.shape);
+        return disk && holds(*disk, scene.materials[size_t(object.material)]);
+    });
 }
 
 /// Coordinates become multiples of 2^-20 of the scene's size, so that adding multiples of that, of up to 2^32 times it,
@@ -238,6 +250,10 @@ void translate_scene(SceneDescription& scene, const glm::dvec3& by) {
 void powers_of_two(Stage& stage, Tally& tally) {
     const int step = stage.quick ? 20 : 4;
     for_each_scene(stage, 100, 16, [&](uint64_t seed, const SceneDescription& scene) {
+        const auto is_tiled = [](const DiskObject& disk, const MaterialDescription& material) {
+            return disk.is_endless() && material.texture >= 0;
+        };
+        if (has_disks(scene, is_tiled)) return false;  // one texture a scene unit, whatever that is
         const Film expected = stage.render(scene, generated_settings(scene));
         tally.witness(shows_something(expected));
         for (int k = -40; k <= 40; k += step) {
@@ -251,11 +267,13 @@ void powers_of_two(Stage& stage, Tally& tally) {
 }
 
 /// Scenes on the grid and their displacements: by their size, and far away. M is the largest coordinate in world units,
-/// where corners of turned solids are rounded; where a corner of the ground, on the grid, is the largest, nothing at
-/// all depends on the place, else hits do not.
+/// where corners of turned solids are rounded, and of the squares that stand for disks; where a corner of the ground,
+/// on the grid, is the largest, and there are no disks, nothing at all depends on the place, else hits do not.
 auto translated(bool with_ground) {
     return [=](Stage& stage, Tally& tally) {
         for_each_scene(stage, 150, 24, [&](uint64_t seed, SceneDescription scene) {
+            const auto is_any = [](const DiskObject&, const MaterialDescription&) { return true; };
+            if (with_ground && has_disks(scene, is_any)) return false;
             put_on_grid(scene);
             const double size = std::ldexp(1.0, -scene.frame->scale);
             const double reach = 1.75 * size;
