@@ -479,7 +479,7 @@ TEST_F(PixelReports, NameTheSolidsOfOneRayThatIsInsideTooMany) {
         add(fmt::format("inner {}", i), 0.5 - 0.05 * i,
             R"({"keys": [[0, [0, 9, 0]], [1, [5, 9, 0]], [3, [0, 0, 0]]]})");
     for (int i = 0; i < 10; ++i) add(fmt::format("unseen {}", i), 1 - 0.05 * i, "[0, -40, 0]");
-    put_bytes(file("f.json"), fmt::format(R"({{"film": {{"width": 24, "height": 16}}, "depth": 6, "background": 1,
+    put_bytes(file("f.json"), fmt::format(R"({{"film": {{"width": 24, "height": 16}}, "depth": 12, "background": 1,
                   "camera": {{"position": [0, -4, 0.2], "target": [0, 0, 0], "fov": 40}},
                   "materials": {{"g": {{"transmission": 0.9, "index": 1.1}}}}, "objects": [{}]}})",
                                           objects));
