@@ -40,7 +40,7 @@ class ContactSearch {
     Contacts run() {
         contacts_.solids.resize(source_.solids.size());
         find_bodies();
-        if (faces_.empty()) return std::move(contacts_);
+        if (faces_.size() == 0) return std::move(contacts_);
         move_into_contact();
         bind_what_coincides();
         return std::move(contacts_);
@@ -102,9 +102,10 @@ class ContactSearch {
     }
 
     /// Runs find(b) for all bodies on all threads, which returns the number of pairs of boxes that it looked at, and
-    /// joins the faces that were found.
+    /// lists the faces that were found.
     template <class Find>
     void find_faces(const Find& find) {
+        tree_ = {};
         std::atomic<size_t> asked{0};
         tbb::parallel_for(size_t(0), bodies_.size(), [&](size_t b) {
             if (asked <= limits_.boxes) asked += find(b);
@@ -113,12 +114,9 @@ class ContactSearch {
         if (asked > limits_.boxes) refuse_crowd(limits_.boxes, find, solid_of, "come near one another");
         size_t count = 0;
         for (const std::vector<FlatFace>& faces : found_) count += faces.size();
-        std::vector<FlatFace> all;
+        FaceList all;
         all.reserve(count);
-        for (std::vector<FlatFace>& faces : found_) {
-            all.insert(all.end(), faces.begin(), faces.end());
-            faces = {};
-        }
+        for (std::vector<FlatFace>& faces : found_) all.add(faces);
         tree_ = FaceTree(std::move(all), pad());
     }
 
@@ -129,19 +127,22 @@ class ContactSearch {
         std::vector<FlatFace> faces = body.planes    ? polyhedron_faces(body, *from.polyhedron)
                                       : test.exact() ? single_faces(body)
                                                      : joined_faces(body);
+        faces.shrink_to_fit();
         if (!may_overlap_itself(body.solid)) return faces;
         body.flat = test.exact() && test.lie_in_one_plane(faces);
         if (from.disk) return faces;
-        FaceTree tree(std::move(faces), pad());
-        std::vector<bool> wanted(tree.faces.size(), false);
+        FaceList list;
+        list.add(faces);
+        const FaceTree tree(std::move(list), pad());
+        std::vector<bool> wanted(faces.size(), false);
         Box box;
-        for (const FlatFace& face : tree.faces) box.add(face.box);
+        for (const FlatFace& face : faces) box.add(face.box);
         const bool alone = !may_come_near_another(box, body.solid);
         for (uint32_t i = 0; i < wanted.size(); ++i) {
-            const FlatFace& face = tree.faces[i];
+            const FlatFace& face = faces[i];
             if (!alone && may_come_near_another(face.box, body.solid)) wanted[i] = true;
             tree.any_near(i, asked, [&](uint32_t j) {
-                const FlatFace& other = tree.faces[j];
+                const FlatFace& other = faces[j];
                 if (j > i && test.touching(face, other, test.distance(face, other)) &&
                     (!test.exact() || test.overlapping(face, other)))
                     wanted[i] = wanted[j] = true;
@@ -150,9 +151,9 @@ class ContactSearch {
             if (!wanted[i] && face.parts.size() > 1) wanted[i] = test.overlapping(face, face);
         }
         if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) return {};
-        if (!body.flat)
-            std::erase_if(tree.faces, [&](const FlatFace& face) { return !wanted[&face - tree.faces.data()]; });
-        return std::move(tree.faces);
+        if (!body.flat) std::erase_if(faces, [&](const FlatFace& face) { return !wanted[face.number]; });
+        faces.shrink_to_fit();
+        return faces;
     }
 
     /// Whether what is in a box may come near another solid where contacts move both.
@@ -440,7 +441,7 @@ class ContactSearch {
 
     /// Takes a face out of its plane.
     void leave(const BoundFace& left, PlaneSets& sets) {
-        const auto face = uint32_t(left.face - faces_.data());
+        const uint32_t face = left.face->number;
         plane_[face] = no_plane;
         const FlatFace& other = faces_[sets.set(sets.root(face)).largest];
         if (other.solid != left.face->solid)
@@ -558,9 +559,9 @@ class ContactSearch {
     const FaceTest as_given_, as_moved_;  // before and after things are moved into one plane
     std::optional<NearSolids> near_;
     std::vector<ContactBody> bodies_;
-    std::vector<std::vector<FlatFace>> found_;  // of each body, until they are joined
+    std::vector<std::vector<FlatFace>> found_;  // of each body
     FaceTree tree_;
-    const std::vector<FlatFace>& faces_ = tree_.faces;
+    const FaceList& faces_ = tree_.faces;
     mutable std::atomic<size_t> looked_at_{0};  // pairs of boxes in this sweep
     std::vector<Pair> pairs_;
     std::unordered_map<uint64_t, size_t> near_solids_;

@@ -31,7 +31,7 @@ struct ContactBody {
 /// face.
 struct FlatFace {
     const ContactBody* body;
-    uint32_t solid;
+    uint32_t solid, number;             // in the list that it is in
     int level;                          // the axis along which all corners have one coordinate; -1: none
     std::span<const uint32_t> parts;    // numbers of triangles of the mesh; of a Platonic solid 2 slab + side
     std::span<const uint32_t> corners;  // vertices of the body, each position once, ascending; of a Platonic solid in

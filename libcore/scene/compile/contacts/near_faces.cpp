@@ -85,7 +85,7 @@ bool FaceTest::lie_in_one_plane(const std::vector<FlatFace>& faces) const {
     return plane != nullptr;
 }
 
-FaceTree::FaceTree(std::vector<FlatFace> of, double grown) : faces(std::move(of)), pad(grown) {
+FaceTree::FaceTree(FaceList of, double grown) : faces(std::move(of)), pad(grown) {
     constexpr size_t few = 16;
     if (faces.size() > few) tree = tree_of(faces.size(), pad, [&](size_t i) { return faces[i].box; });
 }

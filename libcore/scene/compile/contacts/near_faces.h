@@ -8,7 +8,21 @@
 
 namespace cistula {
 
-/// What decides whether two faces touch. Both are of one list: of two of one size the earlier is the larger.
+/// Some faces, wherever they are kept. Each has its number here.
+class FaceList {
+  public:
+    const FlatFace& operator[](size_t i) const { return *faces_[i]; }
+    uint32_t size() const { return uint32_t(faces_.size()); }
+    void reserve(size_t count) { faces_.reserve(count); }
+    void add(std::vector<FlatFace>& faces) {
+        for (FlatFace& face : faces) face.number = size(), faces_.push_back(&face);
+    }
+
+  private:
+    std::vector<const FlatFace*> faces_;
+};
+
+/// What decides whether two faces of one list touch. Of two of one size the earlier is the larger.
 class FaceTest {
   public:
     /// `exact`: how far faces may be apart if that is above 0; else what `range` and their bodies say. `least`: by how
@@ -16,7 +30,9 @@ class FaceTest {
     FaceTest(const ContactRange& range, double exact, double least) : range_(range), exact_(exact), least_(least) {}
 
     bool exact() const { return exact_ > 0; }
-    static bool is_larger(const FlatFace& a, const FlatFace& b) { return a.area != b.area ? a.area > b.area : &a < &b; }
+    static bool is_larger(const FlatFace& a, const FlatFace& b) {
+        return a.area != b.area ? a.area > b.area : a.number < b.number;
+    }
 
     /// How far a face may be from a larger one's plane. Numbers that a file writes alike were rounded alike: faces
     /// along one axis are as far apart as they say.
@@ -42,12 +58,12 @@ class FaceTest {
 
 /// Faces, and a tree of their boxes.
 struct FaceTree {
-    std::vector<FlatFace> faces;
+    FaceList faces;
     double pad = 0;  // by how much boxes are grown
     Tree tree;       // of a few faces none
 
     FaceTree() = default;
-    FaceTree(std::vector<FlatFace> of, double grown);
+    FaceTree(FaceList of, double grown);
 
     /// Whether found(j) holds for a face other than i whose box comes near that of i; asks no further once it does.
     /// Adds the number of those asked of to `asked`.

@@ -12,8 +12,7 @@ namespace cistula {
 /// Faces that are to lie in one plane: that of the largest.
 class PlaneSets {
   public:
-    PlaneSets(const std::vector<FlatFace>& faces, const FaceTest& test)
-        : faces_(faces), test_(test), roots_(faces.size()) {}
+    PlaneSets(const FaceList& faces, const FaceTest& test) : faces_(faces), test_(test), roots_(faces.size()) {}
 
     uint32_t root(uint32_t i) { return roots_.root(i); }
 
@@ -29,7 +28,7 @@ class PlaneSets {
     Set& set(uint32_t root);
 
   private:
-    const std::vector<FlatFace>& faces_;
+    const FaceList& faces_;
     const FaceTest& test_;
     UnionFind roots_;
     std::unordered_map<uint32_t, Set> sets_;  // by root; of faces that are in pairs
