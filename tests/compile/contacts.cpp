@@ -207,25 +207,51 @@ TEST(Contacts, ABoxStandsOnAMeshOfManySquares) {
     }
 }
 
+/// Adds triangles around a tip, over or under a circle of radius 1 around (x, 0, 0); if `closed`, as many below it.
+void add_fan(Bodies& bodies, uint32_t n, double x, double height, bool closed = false) {
+    std::vector<dvec3> vertices{{x, 0, height}, {x, 0, 0}};
+    std::vector<std::array<uint32_t, 3>> triangles;
+    for (uint32_t i = 0; i < n; ++i) {
+        const double angle = 2 * M_PI * i / n;
+        const uint32_t next = 2 + (i + 1) % n;
+        vertices.push_back({x + std::cos(angle), std::sin(angle), 0});
+        triangles.push_back({0, 2 + i, next});
+        if (closed) triangles.push_back({1, next, 2 + i});
+    }
+    bodies.add(vertices, triangles);
+}
+
 /// Around a tip every triangle comes near every other: two fans have more than 16 million pairs, of which few touch.
 TEST(Contacts, FansApartAreNoCrowd) {
     for (const double height : {0.0, 1.0}) {
         Bodies bodies;
-        const uint32_t n = 4096;
-        for (const double x : {-2.0, 2.0}) {
-            std::vector<dvec3> vertices{{x, 0, height}};
-            std::vector<std::array<uint32_t, 3>> triangles;
-            for (uint32_t i = 0; i < n; ++i) {
-                const double angle = 2 * M_PI * i / n;
-                vertices.push_back({x + std::cos(angle), std::sin(angle), 0});
-                triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
-            }
-            bodies.add(vertices, triangles);
-        }
+        for (const double x : {-2.0, 2.0}) add_fan(bodies, 4096, x, height);
         EXPECT_TRUE(gathered(bodies).bodies->contacts.planes.empty());
         bodies.quad({-2.1, 0.2, height == 0 ? 0 : -1}, {0.2, 0, 0}, {0, 0.2, 0});
         const auto pairs = touching(gathered(bodies).bodies->contacts);
         EXPECT_EQ(pairs.size(), height == 0 ? 1u : 0u) << "only what lies on a flat one touches it";
+    }
+}
+
+/// Pairs of boxes are limited, those of one sheet and those of two bodies, of which none touch.
+TEST(Contacts, PairsOfBoxesAreLimited) {
+    Bodies sheets, tips;
+    for (const double x : {-2.0, 2.0}) add_fan(sheets, 600, x, 1);
+    for (const double height : {1.0, -1.0}) {
+        add_fan(tips, 900, height > 0 ? 0 : 0.01, height, true);
+        for (dvec3& p : std::get<TrianglesObject>(tips.scene.objects.back().shape).vertices) p.z -= height;
+    }
+    for (const Bodies* bodies : {&sheets, &tips}) {
+        const SceneSource source = gathered(*bodies);
+        const PlacedBodies& placed = *source.bodies;
+        const auto find = [&](const ContactLimits& limits) {
+            return find_contacts(source, placed.normalization, {}, placed.sizes, limits);
+        };
+        EXPECT_NO_THROW(find({}));
+        EXPECT_NO_THROW(find({.touching = 0, .boxes = 20'000'000}));
+        samples::expect_error([&] { find({.boxes = 1'000'000}); }, ExitCode::usage,
+                              (bodies == &sheets ? "/objects/1" : "/objects/0") +
+                                  std::string(": more than 1 million pairs of faces come near one another"));
     }
 }
 

@@ -1,8 +1,11 @@
 #include "scene/compile/scene_source.h"
 
 #include <algorithm>
+#include <exception>
 #include <map>
 #include <unordered_map>
+
+#include <tbb/parallel_for.h>
 
 #include "base/default_rounding.h"
 #include "cistula/numerics/vec.h"
@@ -95,13 +98,73 @@ void number_equal_names(std::vector<MeshGroup>& groups) {
     }
 }
 
+/// Places meshes on all threads, some objects ahead of the one that is asked for.
+class MeshPlacement {
+  public:
+    /// `known`: has the meshes that are not placed anew; null: none.
+    MeshPlacement(const SceneDescription& scene, const SceneAssets& assets, const MovingScene* known, StopSignal stop)
+        : scene_(scene), assets_(assets), known_(known), stop_(stop) {}
+
+    /// The groups of an object's mesh, or the error that placing it threw. Numbers must ascend.
+    std::vector<MeshGroup> groups(size_t object) {
+        if (object >= first_ + placed_.size()) place_from(object);
+        Placed& placed = placed_[object - first_];
+        if (placed.error) std::rethrow_exception(placed.error);
+        return std::move(placed.groups);
+    }
+
+  private:
+    struct Placed {
+        std::vector<MeshGroup> groups;
+        std::exception_ptr error;
+    };
+    static constexpr size_t most_at_once = 4096;
+    static constexpr size_t most_vertices = 100'000;  // but for those of the last
+
+    /// The mesh of an object that is to be placed, or null.
+    const MeshData* data_of(size_t object) const {
+        const bool is_known = known_ && !known_->solids[object].empty();
+        return is_known || object >= assets_.meshes.size() ? nullptr : assets_.meshes[object].get();
+    }
+
+    void place_from(size_t first) {
+        size_t end = first;
+        for (size_t vertices = 0; end < scene_.objects.size() && end - first < most_at_once && vertices < most_vertices;
+             ++end)
+            if (const MeshData* data = data_of(end))
+                for (const PolygonMesh& group : data->groups) vertices += group.vertices.size();
+        first_ = first;
+        placed_.clear();
+        placed_.resize(end - first);
+        tbb::parallel_for(first, end, [&](size_t i) {
+            const MeshData* const data = data_of(i);
+            if (!data) return;
+            const ObjectDescription& object = scene_.objects[i];
+            Placed& placed = placed_[i - first];
+            try {
+                placed.groups =
+                    join_groups(placed_parts(*data, std::get<MeshObject>(object.shape)), object.material >= 0, stop_);
+            } catch (...) {
+                placed.error = std::current_exception();
+            }
+        });
+    }
+
+    const SceneDescription& scene_;
+    const SceneAssets& assets_;
+    const MovingScene* const known_;
+    const StopSignal stop_;
+    size_t first_ = 0;
+    std::vector<Placed> placed_;
+};
+
 void add_mesh(SceneSource& source, const ObjectDescription& object, const MeshObject& mesh, const MeshData& data,
-              MaterialNames& names) {
+              MeshPlacement& placement, MaterialNames& names) {
     const SceneDescription& scene = *source.description;
     mesh_fields(mesh, FieldCheck(scene, object.place, mesh_keys));
     for (const std::string& warning : data.warnings)
         source.warnings.push_back(scene_error(scene, object.place, warning).what());
-    std::vector<MeshGroup> groups = join_groups(placed_parts(data, mesh), object.material >= 0, source.stop);
+    std::vector<MeshGroup> groups = placement.groups(static_cast<size_t>(&object - scene.objects.data()));
     if (groups.empty()) throw scene_error(scene, object.place, "there are no triangles", "give at least one");
     number_equal_names(groups);
     for (auto& [part, pieces] : groups) {
@@ -189,6 +252,7 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
 
     MaterialNames material_names;
     for (const MaterialDescription& material : description.materials) material_names[material.name];
+    MeshPlacement placement(description, assets, known, stop);
     size_t lights = description.lights.size(), disks = 0;
     for (const ObjectDescription& object : description.objects) {
         const auto number = static_cast<size_t>(&object - description.objects.data());
@@ -201,7 +265,7 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
             throw scene_error(description, object.place, "names a material that does not exist");
         if (const auto* mesh = std::get_if<MeshObject>(&object.shape)) {
             std::shared_ptr<const MeshData>& data = assets.meshes[number];
-            add_mesh(source, object, *mesh, *data, material_names);
+            add_mesh(source, object, *mesh, *data, placement, material_names);
             data.reset();
             continue;
         }

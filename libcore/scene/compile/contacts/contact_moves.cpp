@@ -11,7 +11,6 @@ namespace {
 using glm::dvec3;
 
 constexpr double least_determinant = 0x1p-14;  // of the products of the normals of planes that meet in a vertex
-constexpr double most_moved = 4;               // tolerances
 
 /// Solves the symmetric system m x = r of `size` rows, 3 at most, by Cramer's rule.
 struct Gram {

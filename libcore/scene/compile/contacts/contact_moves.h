@@ -17,6 +17,9 @@ struct PlaneEquation {
     double distance(const glm::dvec3& point) const { return dot(normal, point) - offset; }
 };
 
+/// The most that a vertex is moved, in tolerances of its body.
+inline constexpr double most_moved = 4;
+
 /// The point nearest to `point` on up to three planes; none if they are too nearly parallel to fix one.
 std::optional<glm::dvec3> nearest_on(std::span<const PlaneEquation> planes, const glm::dvec3& point);
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <iterator>
+#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -21,25 +21,26 @@ namespace {
 
 using glm::dvec3;
 
-constexpr uint32_t no_body = 0xffffffffu;
-
 class ContactSearch {
   public:
     ContactSearch(const SceneSource& source, const SceneNormalization& normalization,
-                  const std::vector<ConvexSolid>& polyhedra, const std::vector<MeshSize>& sizes)
+                  const std::vector<ConvexSolid>& polyhedra, const std::vector<MeshSize>& sizes,
+                  const ContactLimits& limits)
         : source_(source),
           normalization_(normalization),
           polyhedra_(polyhedra),
           sizes_(sizes),
           range_(source, normalization),
           rounding_(4 * RealTraits<double>::unit * normalization.extent),
-          exact_(4 * rounding_) {}
+          exact_(4 * rounding_),
+          limits_(limits),
+          as_given_(range_, 0, reach * tau()),
+          as_moved_(range_, exact_, reach * tau()) {}
 
     Contacts run() {
         contacts_.solids.resize(source_.solids.size());
-        body_of_.assign(source_.solids.size(), no_body);
         find_bodies();
-        if (bodies_.empty()) return std::move(contacts_);
+        if (faces_.size() == 0) return std::move(contacts_);
         move_into_contact();
         bind_what_coincides();
         return std::move(contacts_);
@@ -66,17 +67,17 @@ class ContactSearch {
             contacts_.solids[i].reach = reach_of(i);
         });
         for (const SolidContacts& solid : contacts_.solids) range_.near = max_or_second(solid.reach.own, range_.near);
-        const NearSolids near(boxes, pad());
+        const NearSolids& near = near_.emplace(boxes, pad());
         std::vector<uint8_t> wanted(count);
         tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
             wanted[i] = !boxes[i].empty() && (near.meets_another(boxes[i], i) || may_overlap_itself(i));
         });
         std::vector<uint32_t> numbers;
         for (uint32_t i = 0; i < count; ++i)
-            if (wanted[i]) body_of_[i] = uint32_t(numbers.size()), numbers.push_back(i);
+            if (wanted[i]) numbers.push_back(i);
         bodies_.resize(numbers.size());
-        tbb::parallel_for(size_t(0), numbers.size(),
-                          [&](size_t b) { bodies_[b] = body_of(numbers[b], planes[numbers[b]], near); });
+        found_.resize(numbers.size());
+        find_faces([&](size_t b) { return find_body(b, numbers[b], planes[numbers[b]]); });
     }
 
     /// Runs add(first, end, found) for parts of a number of things on all threads, and returns what each part found, in
@@ -90,31 +91,81 @@ class ContactSearch {
         return found;
     }
 
-    /// Makes faces of the parts of bodies that come near others; `joined`: of triangles that lie in one plane together.
-    void find_faces(bool joined) {
-        faces_.clear();
-        const auto add_faces = [&](size_t first, size_t end, std::vector<FlatFace>& faces) {
-            for (size_t b = first; b < end; ++b)
-                if (const ContactBody& body = bodies_[b]; body.planes)
-                    add_polyhedron_faces(body, *source_.solids[body.solid].polyhedron, faces);
-                else if (joined)
-                    add_mesh_faces(body, body.near, body.reach.own, faces);
-                else
-                    add_triangles(body, body.near, faces);
-        };
-        for (std::vector<FlatFace>& faces : find_in_parts<std::vector<FlatFace>>(bodies_.size(), add_faces))
-            std::move(faces.begin(), faces.end(), std::back_inserter(faces_));
-        std::vector<RTCBuildPrimitive> primitives;
-        for (uint32_t i = 0; i < faces_.size(); ++i) primitives.push_back(padded_primitive(faces_[i].box, pad(), i));
-        tree_ = build_tree(primitives, 0);
+    /// Finds the faces of a body that may touch some, as given; of a body without any, as moved or given, all is
+    /// forgotten. Returns the number of pairs of boxes that were looked at.
+    size_t find_body(size_t b, uint32_t solid, const ConvexSolid* planes) {
+        size_t asked = 0;
+        ContactBody& body = bodies_[b] = body_of(solid, planes);
+        found_[b] = faces_that_may_touch(body, as_given_, asked);
+        if (found_[b].empty() && faces_that_may_touch(body, as_moved_, asked).empty()) body = {.solid = solid};
+        return asked;
+    }
+
+    /// Runs find(b) for all bodies on all threads, which returns the number of pairs of boxes that it looked at, and
+    /// lists the faces that were found.
+    template <class Find>
+    void find_faces(const Find& find) {
+        tree_ = {};
+        std::atomic<size_t> asked{0};
+        tbb::parallel_for(size_t(0), bodies_.size(), [&](size_t b) {
+            if (asked <= limits_.boxes) asked += find(b);
+        });
+        const auto solid_of = [&](size_t b) { return bodies_[b].solid; };
+        if (asked > limits_.boxes) refuse_crowd(limits_.boxes, find, solid_of, "come near one another");
+        size_t count = 0;
+        for (const std::vector<FlatFace>& faces : found_) count += faces.size();
+        FaceList all;
+        all.reserve(count);
+        for (std::vector<FlatFace>& faces : found_) all.add(faces);
+        tree_ = FaceTree(std::move(all), pad());
+    }
+
+    /// The faces of a body that come near another one, or touch one of its own if these count. A flat sheet that has
+    /// any brings all.
+    std::vector<FlatFace> faces_that_may_touch(ContactBody& body, const FaceTest& test, size_t& asked) const {
+        const SourceSolid& from = source_.solids[body.solid];
+        std::vector<FlatFace> faces = body.planes    ? polyhedron_faces(body, *from.polyhedron)
+                                      : test.exact() ? single_faces(body)
+                                                     : joined_faces(body);
+        faces.shrink_to_fit();
+        if (!may_overlap_itself(body.solid)) return faces;
+        body.flat = test.exact() && test.lie_in_one_plane(faces);
+        if (from.disk) return faces;
+        FaceList list;
+        list.add(faces);
+        const FaceTree tree(std::move(list), pad());
+        std::vector<bool> wanted(faces.size(), false);
+        Box box;
+        for (const FlatFace& face : faces) box.add(face.box);
+        const bool alone = !may_come_near_another(box, body.solid);
+        for (uint32_t i = 0; i < wanted.size(); ++i) {
+            const FlatFace& face = faces[i];
+            if (!alone && may_come_near_another(face.box, body.solid)) wanted[i] = true;
+            tree.any_near(i, asked, [&](uint32_t j) {
+                const FlatFace& other = faces[j];
+                if (j > i && test.touching(face, other, test.distance(face, other)) &&
+                    (!test.exact() || test.overlapping(face, other)))
+                    wanted[i] = wanted[j] = true;
+                return false;
+            });
+            if (!wanted[i] && face.parts.size() > 1) wanted[i] = test.overlapping(face, face);
+        }
+        if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) return {};
+        if (!body.flat) std::erase_if(faces, [&](const FlatFace& face) { return !wanted[face.number]; });
+        faces.shrink_to_fit();
+        return faces;
+    }
+
+    /// Whether what is in a box may come near another solid where contacts move both.
+    bool may_come_near_another(const Box& box, uint32_t solid) const {
+        return near_->meets_another(padded(box, most_moved * range_.near), solid);
     }
 
     /// Moves what touches, but for the digits of a file, into one plane.
     void move_into_contact() {
-        find_faces(true);
-        PlaneSets sets(faces_, bodies_, body_of_, range_, 0);
-        find_pairs(sets);
-        join_pairs(sets);
+        PlaneSets sets(faces_, as_given_);
+        find_pairs(as_given_);
+        join_pairs(sets, as_given_);
         move_bodies(sets);
     }
 
@@ -122,12 +173,16 @@ class ContactSearch {
     /// coincided from the start and could not be moved, as of two equal curved meshes, each of whose vertices lies in
     /// many planes.
     void bind_what_coincides() {
-        find_faces(false);
+        find_faces([&](size_t b) {
+            size_t asked = 0;
+            found_[b] = faces_that_may_touch(bodies_[b], as_moved_, asked);
+            return asked;
+        });
         pairs_.clear();
-        PlaneSets sets(faces_, bodies_, body_of_, range_, exact_);
-        find_flat_sheets(sets);
-        find_pairs(sets);
-        join_pairs(sets);
+        PlaneSets sets(faces_, as_moved_);
+        find_flat_sheets();
+        find_pairs(as_moved_);
+        join_pairs(sets, as_moved_);
         list_planes();
     }
 
@@ -158,7 +213,7 @@ class ContactSearch {
         return !from.closed && from.mesh.triangles.size() <= most_with_own;
     }
 
-    ContactBody body_of(uint32_t number, const ConvexSolid* planes, const NearSolids& near) const {
+    ContactBody body_of(uint32_t number, const ConvexSolid* planes) const {
         const SourceSolid& from = source_.solids[number];
         ContactBody body;
         body.solid = number;
@@ -180,7 +235,7 @@ class ContactSearch {
             for (auto t = uint32_t(first); t < end; ++t) {
                 Box box;
                 for (const uint32_t corner : body.facets[t]) box.add(body.points[corner]);
-                if (all || near.meets_another(box, number)) found.push_back(t);
+                if (all || near_->meets_another(box, number)) found.push_back(t);
             }
         };
         for (const auto& found : find_in_parts<std::vector<uint32_t>>(body.facets.size(), find_near))
@@ -188,61 +243,53 @@ class ContactSearch {
         return body;
     }
 
-    /// Finds the sheets that may overlap themselves, lie in one plane, and do overlap or touch something.
-    void find_flat_sheets(const PlaneSets& sets) {
-        is_flat_.assign(bodies_.size(), false);
-        std::vector<const FlatFace*> largest(bodies_.size(), nullptr);
-        for (const FlatFace& face : faces_) {
-            const FlatFace*& known = largest[body_of_[face.solid]];
-            if (!known || face.area > known->area) known = &face;
-        }
-        for (size_t b = 0; b < bodies_.size(); ++b) is_flat_[b] = largest[b] && may_overlap_itself(bodies_[b].solid);
-        for (const FlatFace& face : faces_) {
-            const FlatFace& plane = *largest[body_of_[face.solid]];
-            if (farthest_from(plane.normal, plane.offset, body(face), face) > exact_)
-                is_flat_[body_of_[face.solid]] = false;
-        }
+    /// Keeps flat, of the sheets that lie in one plane, those that overlap themselves or touch something.
+    void find_flat_sheets() {
         std::vector<bool> meets(bodies_.size(), false);
-        const auto find = [&](uint32_t i, std::vector<uint32_t>& found) {
-            if (is_flat_[body_of_[faces_[i].solid]] && in_contact_with_any(i, sets))
-                found.push_back(body_of_[faces_[i].solid]);
+        const auto find = [&](uint32_t i, std::vector<size_t>& found) {
+            if (faces_[i].body->flat && in_contact_with_any(i)) found.push_back(number_of(faces_[i]));
         };
-        for (const auto& found : sweep_faces<std::vector<uint32_t>>(find))
-            for (const uint32_t b : found) meets[b] = true;
+        for (const auto& found : sweep_faces<std::vector<size_t>>(find))
+            for (const size_t b : found) meets[b] = true;
         for (size_t b = 0; b < bodies_.size(); ++b)
-            is_flat_[b] = is_flat_[b] && (meets[b] || source_.solids[bodies_[b].solid].disk);
+            bodies_[b].flat = bodies_[b].flat && (meets[b] || source_.solids[bodies_[b].solid].disk);
     }
 
     /// Whether a face touches one of another solid, or overlaps a later one of its own.
-    bool in_contact_with_any(uint32_t i, const PlaneSets& sets) const {
+    bool in_contact_with_any(uint32_t i) const {
         return any_near(i, [&](uint32_t j) {
-            const bool one_solid = faces_[i].solid == faces_[j].solid;
-            return (j > i || !one_solid) && touching(i, j, distance_between(i, j, sets), sets) &&
-                   (!one_solid || overlapping(i, j));
+            const FlatFace &a = faces_[i], &b = faces_[j];
+            const bool one_solid = a.solid == b.solid;
+            return (j > i || !one_solid) && as_moved_.touching(a, b, as_moved_.distance(a, b)) &&
+                   (!one_solid || as_moved_.overlapping(a, b));
         });
     }
 
     // ---- pairs and sets
 
-    const ContactBody& body(const FlatFace& face) const { return bodies_[body_of_[face.solid]]; }
+    size_t number_of(const FlatFace& face) const { return size_t(face.body - bodies_.data()); }
 
     /// What touches or nearly touches of the faces of a part.
     struct FoundPairs {
         std::vector<Pair> touching, near;
     };
 
-    void find_pairs(const PlaneSets& sets) {
+    void find_pairs(const FaceTest& test) {
         std::atomic<size_t> kept{0};
         const auto find = [&](uint32_t i, FoundPairs& found) {
-            if (kept <= most_near_pairs) kept += find_pairs_of(i, sets, found);
+            if (kept <= limits_.touching) kept += find_pairs_of(i, test, found);
         };
-        const std::vector<FoundPairs> parts = sweep_faces<FoundPairs>(find);
+        std::vector<FoundPairs> parts = sweep_faces<FoundPairs>(find);
+        const auto solid_of = [&](uint32_t i) { return faces_[i].solid; };
         const auto pairs_of = [&](uint32_t i) {
             FoundPairs found;
-            return find_pairs_of(i, sets, found);
+            return find_pairs_of(i, test, found);
         };
-        if (kept > most_near_pairs) refuse_crowd(most_near_pairs, pairs_of, "touch or nearly touch");
-        for (const FoundPairs& found : parts) {
+        if (kept > limits_.touching) refuse_crowd(limits_.touching, pairs_of, solid_of, "touch or nearly touch");
+        for (FoundPairs& found : parts) {
+            std::sort(found.near.begin(), found.near.end(), [](const Pair& a, const Pair& b) {
+                return a.first != b.first ? a.first < b.first : a.second < b.second;
+            });
             pairs_.insert(pairs_.end(), found.touching.begin(), found.touching.end());
             for (const Pair& near : found.near)
                 add_near(faces_[near.first], faces_[near.second], near.distance, contacts_.near);
@@ -254,81 +301,62 @@ class ContactSearch {
     std::vector<Found> sweep_faces(const Find& find) {
         looked_at_ = 0;
         const auto find_all = [&](size_t first, size_t end, Found& found) {
-            for (auto i = uint32_t(first); i < end && looked_at_ <= most_box_pairs; ++i) find(i, found);
+            for (auto i = uint32_t(first); i < end && looked_at_ <= limits_.boxes; ++i) find(i, found);
         };
         std::vector<Found> parts = find_in_parts<Found>(faces_.size(), find_all);
+        const auto solid_of = [&](uint32_t i) { return faces_[i].solid; };
         const auto boxes_near = [&](uint32_t i) {
             size_t count = 0;
             any_near(i, [&](uint32_t) { return ++count, false; });
             return count;
         };
-        if (looked_at_ > most_box_pairs) refuse_crowd(most_box_pairs, boxes_near, "come near one another");
+        if (looked_at_ > limits_.boxes) refuse_crowd(limits_.boxes, boxes_near, solid_of, "come near one another");
         return parts;
     }
 
     /// Whether found(j) holds for a face other than i whose box comes near that of i; asks no further once it does.
     template <class Found>
     bool any_near(uint32_t i, const Found& found) const {
-        size_t looked_at = 0;
-        const bool any = any_in_box(tree_, padded(faces_[i].box, pad()), [&](uint32_t j) {
-            if (j == i || !touch(faces_[i].box, faces_[j].box, pad())) return false;
-            ++looked_at;
-            return found(j);
-        });
-        looked_at_ += looked_at;
+        size_t asked = 0;
+        const bool any = tree_.any_near(i, asked, found);
+        looked_at_ += asked;
         return any;
     }
 
     /// Adds the later faces that touch a face or nearly do. Returns their number.
-    size_t find_pairs_of(uint32_t i, const PlaneSets& sets, FoundPairs& found) const {
+    size_t find_pairs_of(uint32_t i, const FaceTest& test, FoundPairs& found) const {
         const size_t before = found.touching.size() + found.near.size();
         const bool with_own = may_overlap_itself(faces_[i].solid);
         any_near(i, [&](uint32_t j) {
-            if (j > i && (with_own || faces_[i].solid != faces_[j].solid)) compare(i, j, sets, found);
+            if (j > i && (with_own || faces_[i].solid != faces_[j].solid)) compare(i, j, test, found);
             return false;
         });
         return found.touching.size() + found.near.size() - before;
     }
 
-    /// Refuses the scene at the first face up to which there are more than `most` pairs, count(i) of each: no order of
-    /// threads decides which.
-    template <class Count>
-    [[noreturn]] void refuse_crowd(size_t most, const Count& count, const std::string& what) const {
+    /// Refuses the scene at the first face or body up to which there are more than `most` pairs, count(i) of each: no
+    /// order of threads decides which.
+    template <class Count, class SolidOf>
+    [[noreturn]] void refuse_crowd(size_t most, const Count& count, const SolidOf& solid,
+                                   const std::string& what) const {
         uint32_t i = 0;
         for (size_t sum = 0; (sum += count(i)) <= most;) ++i;
-        throw scene_error(*source_.description, source_.solids[faces_[i].solid].place,
+        throw scene_error(*source_.description, source_.solids[solid(i)].place,
                           "more than " + std::to_string(most / 1'000'000) + " million pairs of faces " + what +
                               ", as where many objects are in one place",
                           "leave out those that are there several times");
     }
-
-    void compare(uint32_t i, uint32_t j, const PlaneSets& sets, FoundPairs& found) const {
+    void compare(uint32_t i, uint32_t j, const FaceTest& test, FoundPairs& found) const {
         const FlatFace &a = faces_[i], &b = faces_[j];
         const bool one_solid = a.solid == b.solid;
-        const double distance = distance_between(i, j, sets);
-        if (touching(i, j, distance, sets)) {
-            if (!one_solid || !sets.exact() || is_flat_[body_of_[a.solid]] || overlapping(i, j))
+        const double distance = test.distance(a, b);
+        if (test.touching(a, b, distance)) {
+            if (!one_solid || !test.exact() || a.body->flat || test.overlapping(a, b))
                 found.touching.push_back({distance, i, j});
-        } else if (!sets.exact() && distance <= range_.near && !range_.given && touch(a.box, b.box, distance) &&
+        } else if (!test.exact() && distance <= range_.near && !range_.given && touch(a.box, b.box, distance) &&
                    !one_solid && magnitude(dot(a.normal, b.normal)) > 0.5) {
             found.near.push_back({distance, i, j});
         }
-    }
-
-    /// The largest distance of the smaller face's corners from the larger one's plane; without end where their middle
-    /// is beyond all tolerances.
-    double distance_between(uint32_t i, uint32_t j, const PlaneSets& sets) const {
-        const bool first = sets.is_larger(i, j);
-        const FlatFace &large = faces_[first ? i : j], &small = faces_[first ? j : i];
-        if (magnitude(dot(large.normal, small.middle) - large.offset) > 2 * range_.near) return INFINITY;
-        return farthest_from(large.normal, large.offset, body(small), small);
-    }
-
-    bool touching(uint32_t i, uint32_t j, double distance, const PlaneSets& sets) const {
-        if (distance > 2 * range_.near) return false;
-        const bool first = sets.is_larger(i, j);
-        const double tolerance = sets.tolerance(faces_[first ? i : j], faces_[first ? j : i]);
-        return distance <= tolerance && touch(faces_[i].box, faces_[j].box, tolerance);
     }
 
     double tau() const { return 0x1p-20 * normalization_.extent; }
@@ -336,7 +364,7 @@ class ContactSearch {
     void add_near(const FlatFace& a, const FlatFace& b, double gap, std::vector<NearPair>& to) {
         const uint32_t first = std::min(a.solid, b.solid);
         const uint32_t second = std::max(a.solid, b.solid);
-        const bool by_size = 1.1 * gap > min_or_second(body(a).reach.most, body(b).reach.most);
+        const bool by_size = 1.1 * gap > min_or_second(a.body->reach.most, b.body->reach.most);
         const auto known =
             near_solids_.try_emplace((uint64_t(first) << 32 | second) << 1 | (&to == &contacts_.near), to.size());
         if (known.second)
@@ -345,13 +373,13 @@ class ContactSearch {
             pair = {{first, second}, gap, by_size};
     }
 
-    void join_pairs(PlaneSets& sets) {
+    void join_pairs(PlaneSets& sets, const FaceTest& test) {
         tbb::parallel_sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
             if (a.distance != b.distance) return a.distance < b.distance;
             return a.first != b.first ? a.first < b.first : a.second < b.second;
         });
         for (const Pair& pair : pairs_)
-            if (!sets.join(pair.first, pair.second) && !sets.exact())
+            if (!sets.join(pair.first, pair.second) && !test.exact())
                 add_near(faces_[pair.first], faces_[pair.second], pair.distance, contacts_.apart);
         bind_sets(sets);
     }
@@ -363,10 +391,12 @@ class ContactSearch {
         std::vector<bool> wanted(faces_.size(), false);
         for (const Pair& pair : pairs_)
             if (sets.root(pair.first) == sets.root(pair.second) &&
-                (faces_[pair.first].solid != faces_[pair.second].solid || overlapping(pair.first, pair.second)))
+                (faces_[pair.first].solid != faces_[pair.second].solid ||
+                 as_given_.overlapping(faces_[pair.first], faces_[pair.second])))
                 wanted[sets.root(pair.first)] = true;
         for (uint32_t i = 0; i < faces_.size(); ++i)
-            if (may_overlap_itself(faces_[i].solid) && faces_[i].parts.size() > 1 && overlapping(i, i))
+            if (may_overlap_itself(faces_[i].solid) && faces_[i].parts.size() > 1 &&
+                as_given_.overlapping(faces_[i], faces_[i]))
                 wanted[sets.root(i)] = true;
         for (uint32_t i = 0; i < faces_.size(); ++i)
             if (source_.solids[faces_[i].solid].disk) wanted[sets.root(i)] = true;  // alone, too
@@ -381,36 +411,12 @@ class ContactSearch {
         }
     }
 
-    /// Whether triangles of two faces overlap, or of one face.
-    bool overlapping(uint32_t a, uint32_t b) const {
-        const auto first = triangles_of(a);
-        const auto second = triangles_of(b);
-        for (size_t i = 0; i < first.size(); ++i)
-            for (size_t j = 0; j < second.size(); ++j)
-                if ((a != b || i != j) && overlap(first[i], second[j], reach * tau())) return true;
-        return false;
-    }
-
-    std::vector<std::array<dvec3, 3>> triangles_of(uint32_t number) const {
-        const FlatFace& face = faces_[number];
-        const ContactBody& of = body(face);
-        std::vector<std::array<dvec3, 3>> triangles;
-        if (source_.solids[face.solid].polyhedron) {
-            for (size_t i = 1; i + 1 < face.corners.size(); ++i)
-                triangles.push_back(
-                    {of.points[face.corners[0]], of.points[face.corners[i]], of.points[face.corners[i + 1]]});
-        } else {
-            for (const uint32_t t : face.parts) triangles.push_back(points_of(of, t));
-        }
-        return triangles;
-    }
-
     // ---- moves
 
     void move_bodies(PlaneSets& sets) {
         std::vector<std::vector<BoundFace>> bound(bodies_.size());
         for (uint32_t i = 0; i < faces_.size(); ++i)
-            if (plane_[i] != no_plane) bound[body_of_[faces_[i].solid]].push_back({&faces_[i], plane_[i]});
+            if (plane_[i] != no_plane) bound[number_of(faces_[i])].push_back({&faces_[i], plane_[i]});
         std::vector<std::vector<BoundFace>> left(bodies_.size());
         std::vector<double> farthest(bodies_.size(), 0);
         tbb::parallel_for(size_t(0), bodies_.size(), [&](size_t b) {
@@ -435,26 +441,25 @@ class ContactSearch {
 
     /// Takes a face out of its plane.
     void leave(const BoundFace& left, PlaneSets& sets) {
-        const auto face = uint32_t(left.face - faces_.data());
+        const uint32_t face = left.face->number;
         plane_[face] = no_plane;
         const FlatFace& other = faces_[sets.set(sets.root(face)).largest];
         if (other.solid != left.face->solid)
-            add_near(*left.face, other, farthest_from(other.normal, other.offset, body(*left.face), *left.face),
-                     contacts_.apart);
+            add_near(*left.face, other, farthest_from(other.normal, other.offset, *left.face), contacts_.apart);
     }
 
     // ---- results
 
     void list_planes() {
         std::vector<uint32_t> number(equations_.size(), no_plane);
-        std::vector<uint32_t> first(equations_.size(), no_body);
+        std::vector<const FlatFace*> first(equations_.size(), nullptr);
         std::vector<bool> needed(equations_.size(), false);
         for (uint32_t i = 0; i < faces_.size(); ++i) {
             const uint32_t plane = plane_[i];
             if (plane == no_plane) continue;
-            if (first[plane] == no_body) first[plane] = i;
+            if (!first[plane]) first[plane] = &faces_[i];
             needed[plane] =
-                needed[plane] || faces_[first[plane]].solid != faces_[i].solid || may_overlap_itself(faces_[i].solid);
+                needed[plane] || first[plane]->solid != faces_[i].solid || may_overlap_itself(faces_[i].solid);
         }
         for (uint32_t i = 0; i < faces_.size(); ++i) {
             const uint32_t plane = plane_[i];
@@ -471,7 +476,7 @@ class ContactSearch {
             for (const uint32_t part : faces_[i].parts) solid.parts.push_back({part, plane_[i]});
             solid.near.push_back(plane_[i]);
             std::vector<dvec3>& corners = contacts_.planes[plane_[i]].corners;
-            for (const uint32_t corner : faces_[i].corners) corners.push_back(body(faces_[i]).points[corner]);
+            for (const uint32_t corner : faces_[i].corners) corners.push_back(faces_[i].body->points[corner]);
         }
         list_near();
         forget_joined();
@@ -550,12 +555,14 @@ class ContactSearch {
     const double rounding_;  // what lies as near to a plane lies in it
     const double exact_;     // how near to its plane what was moved into it lies
     Contacts contacts_;
-    std::vector<uint32_t> body_of_;  // of each solid, or no_body
+    const ContactLimits limits_;
+    const FaceTest as_given_, as_moved_;  // before and after things are moved into one plane
+    std::optional<NearSolids> near_;
     std::vector<ContactBody> bodies_;
-    std::vector<FlatFace> faces_;
-    Tree tree_;                                 // of the faces' padded boxes
+    std::vector<std::vector<FlatFace>> found_;  // of each body
+    FaceTree tree_;
+    const FaceList& faces_ = tree_.faces;
     mutable std::atomic<size_t> looked_at_{0};  // pairs of boxes in this sweep
-    std::vector<bool> is_flat_;                 // of each body: a sheet in one plane whose faces are joined
     std::vector<Pair> pairs_;
     std::unordered_map<uint64_t, size_t> near_solids_;
     std::vector<uint32_t> plane_;  // of each face
@@ -598,8 +605,9 @@ std::vector<std::string> contact_warnings(const SceneSource& source, const Scene
 }
 
 Contacts find_contacts(const SceneSource& source, const SceneNormalization& normalization,
-                       const std::vector<ConvexSolid>& polyhedra, const std::vector<MeshSize>& sizes) {
-    return ContactSearch(source, normalization, polyhedra, sizes).run();
+                       const std::vector<ConvexSolid>& polyhedra, const std::vector<MeshSize>& sizes,
+                       const ContactLimits& limits) {
+    return ContactSearch(source, normalization, polyhedra, sizes, limits).run();
 }
 
 }  // namespace cistula

@@ -52,16 +52,20 @@ struct Contacts {
     uint32_t plane_of(uint32_t solid, uint32_t part) const;
 };
 
-/// The most pairs of faces of different objects, or of one open sheet, that may touch or nearly touch. Memory and time
-/// grow with them: many objects in one place have as many as the square of their number.
-inline constexpr size_t most_near_pairs = 16'000'000;
-/// The most pairs of such faces whose boxes come near one another, each counted from both sides: some seconds.
-inline constexpr size_t most_box_pairs = 1'000'000'000;
+/// The most pairs of faces of different objects, or of one open sheet.
+struct ContactLimits {
+    /// That may touch or nearly touch. Memory and time grow with them: many objects in one place have as many as the
+    /// square of their number.
+    size_t touching = 16'000'000;
+    /// Whose boxes come near one another, each counted from both sides: some seconds.
+    size_t boxes = 1'000'000'000;
+};
 
 /// Finds the contacts of a scene. `polyhedra`: the planes of its polyhedra, in order; `sizes`: of each solid's
-/// mesh. Throws Error for more than most_near_pairs or most_box_pairs.
+/// mesh. Throws Error for more pairs than the limits allow.
 Contacts find_contacts(const SceneSource& source, const SceneNormalization& normalization,
-                       const std::vector<ConvexSolid>& polyhedra, const std::vector<MeshSize>& sizes);
+                       const std::vector<ConvexSolid>& polyhedra, const std::vector<MeshSize>& sizes,
+                       const ContactLimits& limits = {});
 
 /// The warnings of contacts, each with the place of an object.
 std::vector<std::string> contact_warnings(const SceneSource& source, const SceneNormalization& normalization,

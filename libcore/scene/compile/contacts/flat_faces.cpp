@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cistula/numerics/vec.h"
+#include "scene/compile/meshes/mesh_edges.h"
 
 namespace cistula {
 namespace {
@@ -17,19 +18,23 @@ int level_of(const Box& box) {
     return -1;
 }
 
-/// The face that some triangles make.
-FlatFace face_of(const ContactBody& body, std::vector<uint32_t> triangles) {
+/// The face that some triangles make, whose numbers are kept for it.
+FlatFace face_of(ContactBody& body, std::span<const uint32_t> triangles) {
     FlatFace face{};
+    face.body = &body;
     face.solid = body.solid;
+    face.parts = triangles;
+    std::vector<uint32_t>& numbers = body.numbers;
+    const auto first = ptrdiff_t(numbers.size());
     dvec3 area(0);
     for (const uint32_t t : triangles) {
         const auto corner = points_of(body, t);
         area += cross(corner[1] - corner[0], corner[2] - corner[0]);
-        for (const uint32_t vertex : body.facets[t]) face.corners.push_back(body.welded[vertex]);
+        for (const uint32_t vertex : body.facets[t]) numbers.push_back(body.welded[vertex]);
     }
-    std::sort(face.corners.begin(), face.corners.end());
-    face.corners.erase(std::unique(face.corners.begin(), face.corners.end()), face.corners.end());
-    face.parts = std::move(triangles);
+    std::sort(numbers.begin() + first, numbers.end());
+    numbers.erase(std::unique(numbers.begin() + first, numbers.end()), numbers.end());
+    face.corners = {numbers.begin() + first, numbers.end()};
     face.normal = normalized(area);
     face.area = length(area) / 2;
     for (const uint32_t corner : face.corners) {
@@ -41,77 +46,63 @@ FlatFace face_of(const ContactBody& body, std::vector<uint32_t> triangles) {
     return face;
 }
 
-/// An edge of a triangle, by its welded vertices.
-struct FaceEdge {
-    uint32_t low, high, triangle;  // the triangle's place in the list
-
-    bool same_as(const FaceEdge& other) const { return low == other.low && high == other.high; }
-};
+/// Room for the triangles and corners of all faces, which their lists stay in.
+void make_room(ContactBody& body) {
+    body.numbers.clear();
+    body.numbers.reserve(4 * body.near.size());
+}
 
 /// Joins triangles to flat faces. Of the triangles along one edge, which may be all of a mesh, it looks at the next
 /// few.
 class FaceGrowth {
   public:
-    FaceGrowth(const ContactBody& body, const std::vector<uint32_t>& triangles, double tolerance)
-        : body_(body), triangles_(triangles), tolerance_(tolerance) {
-        for (const uint32_t t : triangles) {
+    explicit FaceGrowth(ContactBody& body) : body_(body), triangles_(body.near), tolerance_(body.reach.own) {
+        std::vector<TriangleCorners> corners;
+        for (const uint32_t t : triangles_) {
             const auto corner = points_of(t);
             areas_.push_back(cross(corner[1] - corner[0], corner[2] - corner[0]));
+            corners.push_back({welded(t, 0), welded(t, 1), welded(t, 2)});
         }
-        link();
+        next_ = link_edges(corners, body.points.size()).next;
     }
 
-    void grow(std::vector<FlatFace>& faces) {
-        std::vector<uint32_t> order(triangles_.size());
-        for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-        std::stable_sort(order.begin(), order.end(),
-                         [&](uint32_t a, uint32_t b) { return dot(areas_[a], areas_[a]) > dot(areas_[b], areas_[b]); });
+    std::vector<FlatFace> grow() {
+        struct Size {
+            double area;
+            uint32_t triangle;
+        };
+        std::vector<Size> order;
+        for (uint32_t i = 0; i < triangles_.size(); ++i) order.push_back({dot(areas_[i], areas_[i]), i});
+        std::stable_sort(order.begin(), order.end(), [](const Size& a, const Size& b) { return a.area > b.area; });
         joined_.assign(triangles_.size(), false);
-        for (const uint32_t first : order) {
-            if (joined_[first] || !(dot(areas_[first], areas_[first]) > 0)) continue;
+        make_room(body_);
+        std::vector<uint32_t>& numbers = body_.numbers;
+        std::vector<FlatFace> faces;
+        for (const auto& [area, first] : order) {
+            if (joined_[first] || !(area > 0)) continue;
             const std::vector<uint32_t> members = flat_neighbors(first);
-            FlatFace face = face_of(body_, numbers(members));
-            if (members.size() > 1 && farthest_from(face.normal, face.offset, body_, face) > 2 * tolerance_)
-                for (const uint32_t one : members) faces.push_back(face_of(body_, {triangles_[one]}));
-            else
-                faces.push_back(std::move(face));
+            if (members.size() == 1) {
+                faces.push_back(face_of_one(first));
+                continue;
+            }
+            const size_t before = numbers.size();
+            for (const uint32_t i : members) numbers.push_back(triangles_[i]);
+            std::sort(numbers.begin() + ptrdiff_t(before), numbers.end());
+            faces.push_back(face_of(body_, std::span(numbers).subspan(before)));
+            if (!(farthest_from(faces.back().normal, faces.back().offset, faces.back()) > 2 * tolerance_)) continue;
+            faces.pop_back();
+            numbers.resize(before);
+            for (const uint32_t i : members) faces.push_back(face_of_one(i));
         }
+        return faces;
     }
 
   private:
     static constexpr uint32_t most_tried = 16;
 
     std::array<dvec3, 3> points_of(uint32_t triangle) const { return cistula::points_of(body_, triangle); }
-
-    std::vector<uint32_t> numbers(const std::vector<uint32_t>& members) const {
-        std::vector<uint32_t> numbers;
-        for (const uint32_t i : members) numbers.push_back(triangles_[i]);
-        std::sort(numbers.begin(), numbers.end());
-        return numbers;
-    }
-
-    void link() {
-        for (uint32_t i = 0; i < triangles_.size(); ++i)
-            for (int k = 0; k < 3; ++k) {
-                const auto& c = body_.facets[triangles_[i]];
-                const uint32_t a = body_.welded[c[size_t(k)]];
-                const uint32_t b = body_.welded[c[size_t((k + 1) % 3)]];
-                edges_.push_back({std::min(a, b), std::max(a, b), i});
-            }
-        std::vector<uint32_t> order(edges_.size());
-        for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-        std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-            const FaceEdge &x = edges_[a], &y = edges_[b];
-            return x.low != y.low ? x.low < y.low : x.high != y.high ? x.high < y.high : a < b;
-        });
-        next_.resize(edges_.size());
-        for (size_t first = 0; first < order.size();) {
-            size_t end = first + 1;
-            while (end < order.size() && edges_[order[end]].same_as(edges_[order[first]])) ++end;
-            for (size_t i = first; i < end; ++i) next_[order[i]] = order[i + 1 == end ? first : i + 1];
-            first = end;
-        }
-    }
+    FlatFace face_of_one(uint32_t i) { return face_of(body_, {&triangles_[i], 1}); }
+    uint32_t welded(uint32_t triangle, size_t corner) const { return body_.welded[body_.facets[triangle][corner]]; }
 
     /// A triangle and all that lie in its plane and hang together with it.
     std::vector<uint32_t> flat_neighbors(uint32_t first) {
@@ -128,7 +119,7 @@ class FaceGrowth {
         for (size_t m = 0; m < members.size(); ++m)
             for (uint32_t e = 3 * members[m]; e < 3 * members[m] + 3; ++e)
                 for (uint32_t other = next_[e], tried = 0; other != e && tried < most_tried; other = next_[other]) {
-                    const uint32_t i = edges_[other].triangle;
+                    const uint32_t i = other / 3;
                     ++tried;
                     if (joined_[i] || !lies_in_plane(i)) continue;
                     joined_[i] = true;
@@ -137,12 +128,11 @@ class FaceGrowth {
         return members;
     }
 
-    const ContactBody& body_;
+    ContactBody& body_;
     const std::vector<uint32_t>& triangles_;
     const double tolerance_;
-    std::vector<dvec3> areas_;     // twice the area vectors
-    std::vector<FaceEdge> edges_;  // 3 triangle + corner
-    std::vector<uint32_t> next_;   // along the same edge, in a ring
+    std::vector<dvec3> areas_;    // twice the area vectors
+    std::vector<uint32_t> next_;  // half-edges along the same edge, in a ring
     std::vector<bool> joined_;
 };
 
@@ -207,9 +197,8 @@ bool NearSolids::meets_another(const Box& box, uint32_t solid) const {
     });
 }
 
-void add_mesh_faces(const ContactBody& body, const std::vector<uint32_t>& triangles, double tolerance,
-                    std::vector<FlatFace>& faces) {
-    FaceGrowth(body, triangles, tolerance).grow(faces);
+std::vector<FlatFace> joined_faces(ContactBody& body) {
+    return FaceGrowth(body).grow();
 }
 
 std::array<dvec3, 3> points_of(const ContactBody& body, uint32_t facet) {
@@ -217,16 +206,22 @@ std::array<dvec3, 3> points_of(const ContactBody& body, uint32_t facet) {
     return {body.points[c[0]], body.points[c[1]], body.points[c[2]]};
 }
 
-void add_triangles(const ContactBody& body, const std::vector<uint32_t>& triangles, std::vector<FlatFace>& faces) {
-    for (const uint32_t t : triangles)
-        if (FlatFace face = face_of(body, {t}); face.area > 0) faces.push_back(std::move(face));
+std::vector<FlatFace> single_faces(ContactBody& body) {
+    make_room(body);
+    std::vector<FlatFace> faces;
+    faces.reserve(body.near.size());
+    for (const uint32_t& t : body.near)
+        if (const FlatFace face = face_of(body, {&t, 1}); face.area > 0) faces.push_back(face);
+    return faces;
 }
 
-void add_polyhedron_faces(const ContactBody& body, const SolidObject& solid, std::vector<FlatFace>& faces) {
+std::vector<FlatFace> polyhedron_faces(const ContactBody& body, const SolidObject& solid) {
+    std::vector<FlatFace> faces;
     for (const Polyhedron::Face& from : polyhedron_of(solid).faces) {
         FlatFace face{};
+        face.body = &body;
         face.solid = body.solid;
-        face.parts = {from.id};
+        face.parts = {&from.id, 1};
         face.corners = from.vertices;
         dvec3 area(0);
         for (size_t i = 0; i < face.corners.size(); ++i) {
@@ -241,14 +236,15 @@ void add_polyhedron_faces(const ContactBody& body, const SolidObject& solid, std
         const bool high = from.id % 2 == 1;
         face.normal = body.moved ? normalized(area) : high ? pair.normal : -pair.normal;
         face.offset = body.moved ? dot(face.normal, face.middle) : high ? pair.high : -pair.low;
-        faces.push_back(std::move(face));
+        faces.push_back(face);
     }
+    return faces;
 }
 
-double farthest_from(const dvec3& normal, double offset, const ContactBody& body, const FlatFace& face) {
+double farthest_from(const dvec3& normal, double offset, const FlatFace& face) {
     double farthest = 0;
     for (const uint32_t corner : face.corners)
-        farthest = max_or_second(magnitude(dot(normal, body.points[corner]) - offset), farthest);
+        farthest = max_or_second(magnitude(dot(normal, face.body->points[corner]) - offset), farthest);
     return farthest;
 }
 

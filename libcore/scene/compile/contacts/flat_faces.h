@@ -2,6 +2,7 @@
 // to a scene's precision (docs/rules.md, 11, LOAD). Private to libcore/scene.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/box.h"
@@ -11,20 +12,6 @@
 
 namespace cistula {
 
-/// A flat face of a solid: triangles of a mesh that lie in one plane and are joined by edges, or a Platonic solid's
-/// face.
-struct FlatFace {
-    uint32_t solid;
-    std::vector<uint32_t> parts;    // numbers of triangles of the mesh; of a Platonic solid 2 slab + side
-    std::vector<uint32_t> corners;  // vertices of the body, each position once, ascending; of a Platonic solid in order
-    glm::dvec3 normal;              // unit; outward, as wound
-    double offset;                  // normal.x of its middle
-    double area;
-    glm::dvec3 middle;  // of the corners
-    int level;          // the axis along which all corners have one coordinate; -1: none
-    Box box;
-};
-
 /// A solid that comes near another one.
 struct ContactBody {
     uint32_t solid;
@@ -32,10 +19,28 @@ struct ContactBody {
     ContactReach reach;
     const ConvexSolid* planes = nullptr;  // of a Platonic solid, as given; null: it is a mesh
     bool moved = false;                   // some points are not where they were given
+    bool flat = false;                    // a sheet in one plane whose faces are joined
     std::vector<glm::dvec3> points;       // vertices in the frame
     std::vector<uint32_t> welded;         // for each point the first at its position
     std::vector<TriangleCorners> facets;  // triangles of all its surface
     std::vector<uint32_t> near;           // facets of a mesh that come near another solid
+    std::vector<uint32_t> numbers;        // what its faces list
+};
+
+/// A flat face of a solid: triangles of a mesh that lie in one plane and are joined by edges, or a Platonic solid's
+/// face.
+struct FlatFace {
+    const ContactBody* body;
+    uint32_t solid, number;             // in the list that it is in
+    int level;                          // the axis along which all corners have one coordinate; -1: none
+    std::span<const uint32_t> parts;    // numbers of triangles of the mesh; of a Platonic solid 2 slab + side
+    std::span<const uint32_t> corners;  // vertices of the body, each position once, ascending; of a Platonic solid in
+                                        // order
+    glm::dvec3 normal;                  // unit; outward, as wound
+    double offset;                      // normal.x of its middle
+    double area;
+    glm::dvec3 middle;  // of the corners
+    Box box;
 };
 
 /// The lengths within which things touch, in the frame.
@@ -74,23 +79,23 @@ class NearSolids {
     Tree tree_;
 };
 
-/// Makes faces of triangles of a mesh: the largest triangle begins one, its neighbors join while their corners lie
-/// within twice the tolerance of its plane and they face alike. A face has the direction of its area. If a corner then
-/// lies farther than twice the tolerance from the face, its triangles are faces by themselves.
-void add_mesh_faces(const ContactBody& body, const std::vector<uint32_t>& triangles, double tolerance,
-                    std::vector<FlatFace>& faces);
+/// Makes faces of the triangles of a mesh that come near others: the largest triangle begins one, its neighbors join
+/// while their corners lie within twice the tolerance of its plane and they face alike. A face has the direction of its
+/// area. If a corner then lies farther than twice the tolerance from the face, its triangles are faces by themselves.
+/// The faces list numbers that the body keeps, in place of those of before.
+std::vector<FlatFace> joined_faces(ContactBody& body);
 
 /// The corners of one of a body's facets.
 std::array<glm::dvec3, 3> points_of(const ContactBody& body, uint32_t facet);
 
 /// Makes a face of each triangle of a mesh.
-void add_triangles(const ContactBody& body, const std::vector<uint32_t>& triangles, std::vector<FlatFace>& faces);
+std::vector<FlatFace> single_faces(ContactBody& body);
 
 /// The faces of a polyhedron; if it was moved, as its corners say.
-void add_polyhedron_faces(const ContactBody& body, const SolidObject& solid, std::vector<FlatFace>& faces);
+std::vector<FlatFace> polyhedron_faces(const ContactBody& body, const SolidObject& solid);
 
 /// The largest distance of a face's corners from a plane.
-double farthest_from(const glm::dvec3& normal, double offset, const ContactBody& body, const FlatFace& face);
+double farthest_from(const glm::dvec3& normal, double offset, const FlatFace& face);
 
 /// Whether two triangles of one plane overlap by more than `least` in every direction.
 bool overlap(const std::array<glm::dvec3, 3>& a, const std::array<glm::dvec3, 3>& b, double least);

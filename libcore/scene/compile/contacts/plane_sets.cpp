@@ -8,17 +8,17 @@ bool PlaneSets::join(uint32_t a, uint32_t b) {
     uint32_t stays = root(a);
     uint32_t goes = root(b);
     if (stays == goes) return true;
-    if (is_larger(set(goes).largest, set(stays).largest)) std::swap(stays, goes);
+    if (FaceTest::is_larger(faces_[set(goes).largest], faces_[set(stays).largest])) std::swap(stays, goes);
     Set &kept = set(stays), &added = set(goes);
     const FlatFace& plane = faces_[kept.largest];
     for (const uint32_t i : added.members) {
         const FlatFace& face = faces_[i];
-        if (farthest_from(plane.normal, plane.offset, body(face), face) > tolerance(plane, face)) return false;
+        if (farthest_from(plane.normal, plane.offset, face) > test_.tolerance(plane, face)) return false;
         const auto known = kept.along.find(face.solid);
         if (known != kept.along.end() && known->second != (dot(face.normal, plane.normal) > 0)) return false;
     }
     for (const uint32_t i : added.members) {
-        if (body(faces_[i]).closed) kept.along[faces_[i].solid] = dot(faces_[i].normal, plane.normal) > 0;
+        if (faces_[i].body->closed) kept.along[faces_[i].solid] = dot(faces_[i].normal, plane.normal) > 0;
         kept.members.push_back(i);
     }
     Set joined = std::move(kept);
@@ -33,19 +33,9 @@ PlaneSets::Set& PlaneSets::set(uint32_t root) {
     const auto [found, is_new] = sets_.try_emplace(root);
     if (is_new) {
         found->second = {root, {root}, {}};
-        if (body(faces_[root]).closed) found->second.along[faces_[root].solid] = true;
+        if (faces_[root].body->closed) found->second.along[faces_[root].solid] = true;
     }
     return found->second;
-}
-
-double PlaneSets::tolerance(const FlatFace& plane, const FlatFace& face) const {
-    if (exact_ > 0) return exact_;
-    const ContactReach &a = body(plane).reach, &b = body(face).reach;
-    const bool alike = plane.level >= 0 && plane.level == face.level && a.rounding.digits == b.rounding.digits;
-    const double rounding =
-        alike ? 0
-              : rounding_along(plane.normal, a.rounding.half_unit) + rounding_along(plane.normal, b.rounding.half_unit);
-    return range_.tolerance(rounding, min_or_second(a.most, b.most));
 }
 
 }  // namespace cistula
