@@ -78,8 +78,8 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
         if (is_inside && i < samples) add_sample(task, i, record);
     }
     if (is_inside) end_pixel(record, own);
-    int64_t lost = record.cut[0] | record.cut[1] | record.cut[2];
-    if constexpr (E::has(keeps_budget)) lost |= record.pruned[0] | record.pruned[1] | record.pruned[2];
+    int64_t lost = 0;
+    for (int c = 0; c < 3; ++c) lost |= record.pruned[c] | record.cut[c];
     const bool any_lost = __syncthreads_or(lost != 0) != 0;
     static_assert(BlockPlan::shared_shape.pixels() == warp_threads);
     if (shared_tile) {
@@ -90,7 +90,7 @@ __global__ void __launch_bounds__(kernel_shapes[mask].threads(), least_blocks<Re
     if (warp == 0) add_block_to_tally(*job.tally, block_storage);
     if (any_lost && warp % 4 == 3 && (!shared_tile || warp == 3)) {
         const int count = shared_tile ? warp_threads : 4 * warp_threads;
-        add_losses_to_tally<E::has(keeps_budget)>(*job.tally, block_storage.records + warp / 4 * count, count);
+        add_losses_to_tally(*job.tally, block_storage.records + warp / 4 * count, count);
     }
     const size_t first = size_t(blockIdx.x) * size_t(shape.pixels());
     if (shared_tile)

@@ -125,18 +125,21 @@ __device__ void add_block_to_tally(DeviceTally& tally, const BlockStorage<thread
 }
 
 /// Adds what some records lost to the tally; called by one warp. As many lanes as can share each of the numbers: a
-/// block ends no sooner than this, so it is to take few steps. Without a budget nothing is pruned.
-template <bool has_budget>
+/// block ends no sooner than this, so it is to take few steps. Blocks that prune nothing are common.
 __device__ inline void add_losses_to_tally(DeviceTally& tally, const PixelRecord* records, int count) {
-    constexpr int first = has_budget ? 0 : 3;  // of DeviceTally::losses
-    constexpr int lanes = has_budget ? 4 : 8;  // for each number
     const int lane = threadIdx.x % warp_threads;
+    int64_t pruned = 0;
+    for (int k = lane; k < count; k += warp_threads)
+        pruned |= records[k].pruned[0] | records[k].pruned[1] | records[k].pruned[2];
+    const bool any_pruned = __any_sync(0xffffffffu, pruned != 0) != 0;
+    const int first = any_pruned ? 0 : 3;  // of DeviceTally::losses
+    const int lanes = any_pruned ? 4 : 8;  // for each number
     const int i = first + lane / lanes;
     Total total;
     if (i < 6) {
         const PixelLosses& of = records[lane % lanes];
-        const int64_t* const number = i < 3 ? of.pruned + i : of.cut + (i - 3);
-        constexpr int stride = lanes * int(sizeof(PixelRecord) / sizeof(int64_t));
+        const int64_t* number = i < 3 ? of.pruned + i : of.cut + (i - 3);
+        const int stride = lanes * int(sizeof(PixelRecord) / sizeof(int64_t));
 #pragma unroll 4
         for (int k = 0; k < count / lanes; ++k) total.add(uint64_t(number[k * stride]));
     }
