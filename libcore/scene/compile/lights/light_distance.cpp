@@ -30,18 +30,6 @@ double distance_to_segment(const dvec3& a, const dvec3& b, const dvec3& p) {
     return length(from - share * along);
 }
 
-double distance_to_triangle(const std::array<dvec3, 3>& corner, const dvec3& p) {
-    const dvec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-    bool over = dot(normal, normal) > 0;
-    double nearest = INFINITY;
-    for (size_t e = 0; e < 3; ++e) {
-        const dvec3 &a = corner[e], &b = corner[(e + 1) % 3];
-        over = over && dot(cross(b - a, p - a), normal) >= 0;
-        nearest = min_or_second(distance_to_segment(a, b, p), nearest);
-    }
-    return over ? magnitude(dot(normal, p - corner[0])) / length(normal) : nearest;
-}
-
 /// Whether a light lies in the plane of a triangle, and the triangle's normal is exact enough for incident_distance.
 bool is_in_plane(const std::array<dvec3, 3>& corner, const dvec3& p, double tolerance) {
     const dvec3 ab = corner[1] - corner[0];
@@ -103,6 +91,18 @@ bool lies_on(const std::vector<LightFace>& faces, uint32_t solid, uint32_t face)
 }
 
 }  // namespace
+
+double distance_to_triangle(const std::array<dvec3, 3>& corner, const dvec3& p) {
+    const dvec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    bool over = dot(normal, normal) > 0;
+    double nearest = INFINITY;
+    for (size_t e = 0; e < 3; ++e) {
+        const dvec3 &a = corner[e], &b = corner[(e + 1) % 3];
+        over = over && dot(cross(b - a, p - a), normal) >= 0;
+        nearest = min_or_second(distance_to_segment(a, b, p), nearest);
+    }
+    return over ? magnitude(dot(normal, p - corner[0])) / length(normal) : nearest;
+}
 
 double distance_to_box(const Box& box, const dvec3& p) {
     dvec3 d;

@@ -1,6 +1,7 @@
 // How near to lights there is anything that they can light (docs/rules.md, 7). Private to libcore/scene.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "scene/compile/lights/compile_lights.h"
@@ -11,6 +12,9 @@ namespace cistula {
 /// Lights with falloff that come nearer than this to a solid's box, times M, and have no larger radius, are bounded by
 /// their distance to its faces.
 inline constexpr double small_reach = 0x1p-12;
+
+/// The distance of a point from a triangle; of one without area from its edges.
+double distance_to_triangle(const std::array<glm::dvec3, 3>& corner, const glm::dvec3& p);
 
 /// A light that is bounded by its distance to a solid's faces, which is no less than this.
 struct LightDistance {

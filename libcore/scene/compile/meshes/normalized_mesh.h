@@ -8,6 +8,8 @@
 
 namespace cistula {
 
+struct SourceSolid;
+
 /// A mesh as it is rendered: in the frame, moved by contacts, rounded to the scene's precision.
 class NormalizedMesh {
   public:
@@ -44,6 +46,12 @@ struct MeshSize {
 };
 
 MeshSize mesh_size(const MeshSource& mesh, const SceneNormalization& normalization, double least_height);
+
+/// The least distance of two triangles that are sides of a wall: they look at or away from each other (of a sheet also
+/// the same way), are more than `least` and less than `most` apart, and are no edge of the mesh: neither flat faces
+/// with a common edge, nor joined by triangles within 32 times their distance of where they are nearest. Infinity:
+/// none.
+double thinnest_wall(const SourceSolid& solid, const SceneNormalization& normalization, double least, double most);
 
 /// The least distance of a point from the planes of those triangles that it lies over, of all that are more than
 /// `least`; infinity if none is less than `most`.

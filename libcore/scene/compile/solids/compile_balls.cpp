@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "cistula/geometry/ball.h"
 #include "scene/compile/lights/light_distance.h"
+#include "scene/compile/scene_source.h"
 #include "scene/compile/solids/compile_solids.h"
 #include "scene/description/rotation.h"
 #include "scene/trees/tree_build.h"
@@ -14,28 +17,46 @@ namespace {
 
 using glm::dvec3;
 
-/// The first ball of each ball's family: the earliest that is no other's kin and within `tolerance` of it.
-std::vector<uint32_t> find_families(const std::vector<PlacedBall>& balls, double tolerance) {
-    const auto count = uint32_t(balls.size());
-    std::vector<uint32_t> order(count), place(count), first(count);
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](uint32_t a, uint32_t b) { return balls[a].center.x < balls[b].center.x; });
-    for (uint32_t i = 0; i < count; ++i) place[order[i]] = i;
-    for (uint32_t i = 0; i < count; ++i) {
-        first[i] = i;
+/// Balls in the order of their places along a direction, across which grids have few.
+class BallOrder {
+  public:
+    explicit BallOrder(const std::vector<PlacedBall>& balls) : order_(balls.size()), place_(balls.size()) {
+        for (const PlacedBall& ball : balls) along_.push_back(dot(ball.center, dvec3(0.48, 0.6, 0.64)));
+        std::iota(order_.begin(), order_.end(), 0u);
+        std::stable_sort(order_.begin(), order_.end(), [&](uint32_t a, uint32_t b) { return along_[a] < along_[b]; });
+        for (uint32_t i = 0; i < order_.size(); ++i) place_[order_[i]] = i;
+    }
+    /// Calls visit(other) for the earlier balls whose centers may lie within `range` of a ball's.
+    template <class Visit>
+    void for_each_near(uint32_t ball, double range, const Visit& visit) const {
         const auto look_at = [&](uint32_t at) {
-            const PlacedBall& other = balls[order[at]];
-            if (!(magnitude(other.center.x - balls[i].center.x) <= tolerance)) return false;
-            const bool equal =
-                length(other.center - balls[i].center) + magnitude(other.radius - balls[i].radius) <= tolerance;
-            if (order[at] < first[i] && first[order[at]] == order[at] && equal) first[i] = order[at];
+            if (!(magnitude(along_[order_[at]] - along_[ball]) <= 2 * range)) return false;
+            if (order_[at] < ball) visit(order_[at]);
             return true;
         };
-        for (uint32_t at = place[i]; at-- > 0 && look_at(at);) {
+        for (uint32_t at = place_[ball]; at-- > 0 && look_at(at);) {
         }
-        for (uint32_t at = place[i] + 1; at < count && look_at(at); ++at) {
+        for (uint32_t at = place_[ball] + 1; at < order_.size() && look_at(at); ++at) {
         }
+    }
+
+  private:
+    std::vector<double> along_;
+    std::vector<uint32_t> order_, place_;
+};
+
+/// The first ball of each ball's family: the earliest that is no other's kin and within `tolerance` of it.
+std::vector<uint32_t> find_families(const std::vector<PlacedBall>& balls, double tolerance) {
+    const BallOrder order(balls);
+    std::vector<uint32_t> first(balls.size());
+    for (uint32_t i = 0; i < balls.size(); ++i) {
+        first[i] = i;
+        order.for_each_near(i, tolerance, [&](uint32_t other) {
+            if (other < first[i] && first[other] == other &&
+                length(balls[other].center - balls[i].center) + magnitude(balls[other].radius - balls[i].radius) <=
+                    tolerance)
+                first[i] = other;
+        });
     }
     return first;
 }
@@ -137,7 +158,10 @@ class NearBalls {
 }  // namespace
 
 PlacedBall::PlacedBall(const SphereObject& object, uint32_t number, const SceneNormalization& normalization)
-    : solid(number), center(normalization.point(object.center)), radius(object.radius * normalization.factor) {
+    : solid(number),
+      center(normalization.point(object.center)),
+      radius(object.radius * normalization.factor),
+      given(&object) {
     const Rotation rotation(object.rotation);
     for (int axis = 0; axis < 3; ++axis) {
         dvec3 unit(0);
@@ -148,6 +172,37 @@ PlacedBall::PlacedBall(const SphereObject& object, uint32_t number, const SceneN
 
 double PlacedBall::distance(const dvec3& point) const {
     return magnitude(length(point - center) - radius);
+}
+
+double PlacedBall::apart(const PlacedBall& other) const {
+    double largest = 0;
+    for (const SphereObject* ball : {given, other.given}) {
+        largest = max_or_second(ball->radius, largest);
+        for (int axis = 0; axis < 3; ++axis) largest = max_or_second(magnitude(ball->center[axis]), largest);
+    }
+    const double distance =
+        length(given->center - other.given->center) + magnitude(given->radius - other.given->radius);
+    return distance > 2 * double(incidence<double>) * largest ? distance : 0;
+}
+
+std::optional<BallCoat> thinnest_coat(const SceneSource& source, const std::vector<PlacedBall>& balls,
+                                      const SceneNormalization& normalization) {
+    std::optional<BallCoat> thinnest;
+    double range = double(incidence<float>) * normalization.extent;
+    const BallOrder order(balls);
+    for (uint32_t i = 0; i < balls.size(); ++i)
+        order.for_each_near(i, range, [&](uint32_t other) {
+            const double distance = balls[i].apart(balls[other]) * normalization.factor;
+            if (distance <= 0 || distance > range || (thinnest && distance == range)) return;
+            thinnest = {{balls[other].solid, balls[i].solid}, range = distance};
+        });
+    // Twice what double takes for one, as its coordinates are rounded.
+    if (thinnest && range <= 2 * double(incidence<double>) * normalization.extent)
+        throw scene_error(*source.description, source.solids[thinnest->solids[1]].place,
+                          fmt::format("{:.1e} from {}: beside the scene's size double precision cannot hold that",
+                                      range / normalization.factor, source.solids[thinnest->solids[0]].place),
+                          "make them equal, or bring what is far away nearer");
+    return thinnest;
 }
 
 template <class Real>

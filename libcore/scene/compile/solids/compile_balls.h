@@ -18,13 +18,26 @@ struct PlacedBall {
     glm::dvec3 center{0};
     double radius = 1;
     std::array<glm::dvec3, 3> axes;  // of its longitudes and latitudes
+    const SphereObject* given;       // as the file has it
 
     PlacedBall(const SphereObject& object, uint32_t number, const SceneNormalization& normalization);
 
     Box box() const { return {center - glm::dvec3(radius), center + glm::dvec3(radius)}; }
     /// The distance of a point from the ball's surface.
     double distance(const glm::dvec3& point) const;
+    /// The distance of centers plus that of radii, of the numbers in the file; 0 where their rounding may make it.
+    double apart(const PlacedBall& other) const;
 };
+
+/// Two balls that float takes for one, though their numbers tell them apart.
+struct BallCoat {
+    uint32_t solids[2];
+    double distance;  // in the frame
+};
+
+/// The two with the least distance. Throws Error where double would take them for one, too.
+std::optional<BallCoat> thinnest_coat(const SceneSource& source, const std::vector<PlacedBall>& balls,
+                                      const SceneNormalization& normalization);
 
 /// Adds balls to a scene's solids, each with the center and radius of its family.
 template <class Real>

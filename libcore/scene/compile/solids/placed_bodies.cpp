@@ -50,6 +50,7 @@ PlacedBodies::PlacedBodies(const SceneSource& source) : normalization(find_norma
     });
     for (uint32_t i = 0; i < count; ++i)
         if (source.solids[i].sphere) balls.emplace_back(*source.solids[i].sphere, i, normalization);
+    coat = thinnest_coat(source, balls, normalization);
     std::vector<ConvexSolid> polyhedra;
     for (std::optional<ConvexSolid>& solid : by_planes)
         if (solid) polyhedra.push_back(std::move(*solid));

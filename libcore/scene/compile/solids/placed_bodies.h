@@ -21,6 +21,7 @@ struct PlacedBodies {
     Contacts contacts;
     std::vector<ConvexSolid> convex;  // the solids that are given by planes, by number; in contact as contacts say
     std::vector<PlacedBall> balls;    // by number
+    std::optional<BallCoat> coat;     // the thinnest, if float would lose it
     std::vector<PlacedDisk> disks;    // by number
 
     explicit PlacedBodies(const SceneSource& source);

@@ -32,6 +32,8 @@ class SmallestPartSearch {
         add_solids();
         add_lights();
         add_gaps();
+        add_coat();
+        for (uint32_t i = 0; i < source_.solids.size(); ++i) add_walls(i);
         return smallest_;
     }
 
@@ -62,16 +64,20 @@ class SmallestPartSearch {
 
     void add_mesh(uint32_t number) {
         const SourceSolid& solid = source_.solids[number];
-        const MaterialDescription& material = source_.materials[solid.material];
         const MeshSize& size = bodies_.sizes[number];
         if (size.triangles == 0) return;
         if (solid.closed)
             add(solid.thickness * normalization_.factor, [&] { return name(solid) + ": its thickness"; });
         else
             add(size.half_width, [&] { return name(solid) + ": its half width"; });
-        if (!(material.reflection > 0 || material.transmission > 0)) return;
-        if (!(size.least_height / extent_ < smallest_.share) || has_planes(number)) return;
+        if (!sends_lines_on(number)) return;
         add(size.least_height, [&] { return name(solid) + ": the least height of its triangles"; });
+    }
+
+    /// Whether lines start on a solid's triangles and go on.
+    bool sends_lines_on(uint32_t number) const {
+        const MaterialDescription& material = source_.materials[source_.solids[number].material];
+        return (material.reflection > 0 || material.transmission > 0) && !has_planes(number);
     }
 
     bool has_planes(uint32_t number) const {
@@ -123,6 +129,25 @@ class SmallestPartSearch {
                         return name(source_.solids[pair.solids[1]]) + ": its distance from " +
                                source_.solids[pair.solids[0]].place;
                     });
+    }
+
+    /// Adds the thinnest coat, as gaps.
+    void add_coat() {
+        if (const std::optional<BallCoat>& coat = bodies_.coat)
+            add(max_or_second(coat->distance, least_share(Precision::double_) * extent_), [&] {
+                return name(source_.solids[coat->solids[1]]) + ": its distance from " +
+                       source_.solids[coat->solids[0]].place;
+            });
+    }
+
+    /// Adds half the thinnest wall of a mesh: what a plate has for its thickness. Not looked for where the scene takes
+    /// double anyway, so that triangles are few beside it.
+    void add_walls(uint32_t number) {
+        const SourceSolid& solid = source_.solids[number];
+        if (!solid.is_mesh() || smallest_.share < least_share(Precision::single_) || !sends_lines_on(number)) return;
+        source_.stop.check();
+        const double wall = thinnest_wall(solid, normalization_, least_share(Precision::double_) * extent_, 2 * range_);
+        add(wall / 2, [&] { return name(solid) + ": half its thinnest wall"; });
     }
 
     const SceneSource& source_;

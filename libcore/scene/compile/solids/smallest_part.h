@@ -22,10 +22,11 @@ constexpr double least_share(Precision precision) {
 }
 
 /// The smallest of: inradii of convex solids and radii of spheres; thicknesses of meshes (a closed one's volume over
-/// its area, half the width of others: half the area over the diagonal of the box); heights of triangles in meshes that
-/// mirror or transmit, but those too low for double; distances of lights from faces, but those up to 16 u M in float,
-/// where they lie on them; radii of visible lights. Gaps do not count, nor do the pieces of one mesh. The camera does
-/// not matter. Of a scene that changes: the smallest at the frames of its keys, whichever is shown.
+/// its area, half the width of others: half the area over the diagonal of the box); in meshes that mirror or transmit
+/// heights of triangles, but those too low for double, and half the thinnest wall, where nothing else takes double;
+/// distances of lights from faces, but those up to 16 u M in float, where they lie on them; radii of visible lights;
+/// gaps that float would close, between solids and between balls. Not other gaps, nor the camera. Of a scene that
+/// changes: the smallest at the frames of its keys, whichever is shown.
 SmallestPart smallest_part(const SceneSource& source);
 
 /// The smallest part of a scene. Opens its meshes. Throws Error as compile_scene does.
