@@ -72,7 +72,8 @@ class StyleSearch {
         last_bit_ = std::min(last_bit_, last_bit_of(number));
     }
     Style style() const {
-        const bool on_grid = last_bit_ >= std::ilogb(largest_) - 23;  // of single precision, for the largest number
+        const bool on_grid =
+            count_ > 0 && last_bit_ >= std::ilogb(largest_) - 23;  // of single precision, for the largest number
         if (count_ > 0 && floats_ && most_ > fewest_digits && !on_grid) return {as_floats, 0, false};
         if (2 * early_ >= count_) return {};
         if (most_ < fewest_digits || most_ > most_digits || 2 * full_ < count_) return {0, 0, false};
