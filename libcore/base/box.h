@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include <glm/vec3.hpp>
 
@@ -30,5 +31,11 @@ struct Box {
         return all;
     }
 };
+
+inline Box box_of(std::span<const glm::dvec3> points) {
+    Box box;
+    for (const glm::dvec3& p : points) box.add(p);
+    return box;
+}
 
 }  // namespace cistula

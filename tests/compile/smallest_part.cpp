@@ -280,8 +280,8 @@ TEST(SmallestPart, MeshesAreNoWallsAtTheirEdges) {
     };
     for (const double slope : {1.0, 0.1, 0.01, 0.001, 0.0001}) {
         for (const uint32_t n : {1u, 8u, 32u}) EXPECT_EQ(wall_of(knife(slope, 0, n)), 0) << slope << " " << n;
-        // the same sides where nothing joins them
-        if (slope < 1) EXPECT_NEAR(wall_of(knife(slope, 1e-5, 8)), 5e-6, 1e-7) << slope;
+        if (slope == 1) continue;
+        EXPECT_NEAR(wall_of(knife(slope, 1e-5, 8)), 5e-6, 1e-7) << slope;  // the same sides where nothing joins them
     }
     EXPECT_EQ(wall_of(torus(1, 0.3, 64, 32)), 0);
     EXPECT_EQ(wall_of(bumpy_sphere(5000)), 0);

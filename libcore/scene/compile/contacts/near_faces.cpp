@@ -11,12 +11,6 @@ using glm::dvec3;
 
 constexpr size_t few_pairs = 4096;  // of triangles, that are looked at one by one
 
-Box box_of(const std::array<dvec3, 3>& triangle) {
-    Box box;
-    for (const dvec3& p : triangle) box.add(p);
-    return box;
-}
-
 /// A tree of so many boxes, each grown by `pad`.
 template <class BoxOf>
 Tree tree_of(size_t count, double pad, const BoxOf& box) {

@@ -26,12 +26,6 @@ struct NeighborBlock {
     uint32_t number[width];
 };
 
-Box box_of(const std::array<dvec3, 3>& corner) {
-    Box box;
-    for (const dvec3& p : corner) box.add(p);
-    return box;
-}
-
 bool apart(const Box& a, const Box& b) {
     for (int axis = 0; axis < 3; ++axis)
         if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis]) return true;

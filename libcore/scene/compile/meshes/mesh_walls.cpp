@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <mutex>
 #include <unordered_set>
@@ -13,6 +12,7 @@
 #include "scene/compile/lights/light_distance.h"
 #include "scene/compile/meshes/normalized_mesh.h"
 #include "scene/compile/scene_source.h"
+#include "scene/trees/tree_build.h"
 
 namespace cistula {
 namespace {
@@ -20,7 +20,6 @@ namespace {
 using glm::dvec3;
 using Corners = std::array<dvec3, 3>;
 
-constexpr size_t leaf_size = 8;        // triangles
 constexpr double least_facing = 0.25;  // cosine of the normals of two sides of a wall
 constexpr double nearby = 32;          // times the distance of two triangles: what joins them there makes them an edge
 constexpr double flat = 0x1p-22;       // of M: corners of a flat face
@@ -53,76 +52,40 @@ struct Approach {
     }
 };
 
-Box box_around(const Corners& triangle) {
-    Box box;
-    for (const dvec3& p : triangle) box.add(p);
-    return box;
-}
-
 class WallSearch {
   public:
     WallSearch(const SourceSolid& solid, const SceneNormalization& normalization, double least, double most)
-        : solid_(solid), normalization_(normalization), least_(least), thinnest_(most), edges_(&solid.edges) {}
+        : solid_(solid),
+          normalization_(normalization),
+          least_(least),
+          thinnest_(most),
+          edges_(&solid.edges),
+          normals_(solid.mesh.triangles.size(), dvec3(0)) {}
 
     double run() {
         const double most = thinnest_;
-        sort();
-        const auto leaves = uint32_t(bounds_.size() / 2);
-        tbb::parallel_for(uint32_t(0), leaves, [&](uint32_t leaf) { bounds_[leaves + leaf] = bound(leaf); });
-        for (uint32_t node = leaves; --node > 0;) {
-            bounds_[node] = bounds_[2 * node];
-            bounds_[node].places.add(bounds_[2 * node + 1].places);
-            bounds_[node].normals.add(bounds_[2 * node + 1].normals);
-        }
+        const auto count = uint32_t(normals_.size());
+        std::vector<RTCBuildPrimitive> primitives(count);
+        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+            const Corners c = corners(i);
+            const dvec3 n = cross(c[1] - c[0], c[2] - c[0]);
+            if (is_finite(n) && dot(n, n) > 0) normals_[i] = n / length(n);
+            primitives[i] = padded_primitive(box_of(c), 0, i);
+        });
+        std::erase_if(primitives, [&](const RTCBuildPrimitive& p) { return normals_[p.primID] == dvec3(0); });
+        const Tree tree = build_tree(primitives, 0);
         // In an order without any, so that the thinnest place is seldom found by small steps.
-        tbb::parallel_for(uint32_t(0), leaves, [&](uint32_t i) {
-            const uint32_t leaf = (i * 2654435761u) % leaves;
-            compare(leaf, leaf + leaves, 1);
+        tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
+            const auto own = uint32_t(uint64_t(i) * 2654435761u % count);
+            if (normals_[own] == dvec3(0)) return;
+            for_each_in_box(tree, padded(box_of(corners(own)), thinnest_), [&](uint32_t other) {
+                if (other < own) compare(own, other);
+            });
         });
         return thinnest_ < most ? thinnest_.load() : INFINITY;
     }
 
   private:
-    struct Bound {
-        Box places, normals;
-    };
-
-    /// Puts triangles with an area in the order of a curve that fills space, those of a leaf of the tree together.
-    void sort() {
-        Box around;
-        for (const TriangleCorners& t : solid_.mesh.triangles) around.add(solid_.mesh.vertices[t[0]]);
-        const dvec3 size = around.high - around.low;
-        std::vector<uint64_t> keys(solid_.mesh.triangles.size());
-        tbb::parallel_for(size_t(0), keys.size(), [&](size_t i) {
-            const dvec3 from_low = solid_.mesh.vertices[solid_.mesh.triangles[i][0]] - around.low;
-            uint64_t key = 0;
-            for (int axis = 0; axis < 3; ++axis) {
-                const double share = from_low[axis] / size[axis];
-                const auto cell = share > 0 && share <= 1 ? uint32_t(1023 * share) : 0u;
-                for (uint32_t bit = 0; bit < 10; ++bit) key |= uint64_t(cell >> bit & 1) << (3 * bit + uint32_t(axis));
-            }
-            keys[i] = key << 32 | i;
-        });
-        tbb::parallel_sort(keys);
-        order_.assign(keys.begin(), keys.end());
-        normals_.resize(keys.size());
-        bounds_.resize(2 * std::max<size_t>(1, std::bit_ceil(keys.size()) / leaf_size));
-    }
-    size_t first(size_t leaf) const { return leaf * order_.size() / (bounds_.size() / 2); }
-
-    Bound bound(uint32_t leaf) {
-        Bound bound;
-        for (size_t i = first(leaf); i < first(leaf + 1); ++i) {
-            const Corners c = corners(order_[i]);
-            const dvec3 n = cross(c[1] - c[0], c[2] - c[0]);
-            normals_[i] = is_finite(n) && dot(n, n) > 0 ? n / length(n) : dvec3(0);
-            if (normals_[i] == dvec3(0)) continue;
-            bound.places.add(box_around(c));
-            bound.normals.add(normals_[i]);
-        }
-        return bound;
-    }
-
     Corners corners(uint32_t triangle) const {
         Corners c;
         for (size_t i = 0; i < 3; ++i)
@@ -130,40 +93,14 @@ class WallSearch {
         return c;
     }
 
-    /// Whether triangles with these bounds make no wall.
-    bool apart(const Bound& a, const Bound& b) const {
-        if (!touch(a.places, b.places, thinnest_ / 2)) return true;
-        double least = 0;  // no cosine is less
-        for (int axis = 0; axis < 3; ++axis) {
-            const double low = a.normals.low[axis], high = a.normals.high[axis];
-            least += min_or_second(min_or_second(low * b.normals.low[axis], low * b.normals.high[axis]),
-                                   min_or_second(high * b.normals.low[axis], high * b.normals.high[axis]));
-        }
-        return solid_.closed && least > -least_facing;
-    }
-
-    /// Compares a leaf's triangles with the earlier ones under a node.
-    void compare(uint32_t leaf, uint32_t own, uint32_t node) {
-        if (apart(bounds_[own], bounds_[node])) return;
-        if (2 * node < bounds_.size()) {
-            compare(leaf, own, 2 * node);
-            compare(leaf, own, 2 * node + 1);
-        } else if (node <= own) {
-            for (size_t i = first(leaf); i < first(leaf + 1); ++i)
-                for (size_t k = first(node - (own - leaf)), end = first(node - (own - leaf) + 1); k < end && k < i; ++k)
-                    compare(i, k);
-        }
-    }
-
-    void compare(size_t a, size_t b) {
+    void compare(uint32_t a, uint32_t b) {
         const double facing = dot(normals_[a], normals_[b]);
         if (!((solid_.closed ? -facing : magnitude(facing)) > least_facing)) return;
-        const Corners of_a = corners(order_[a]), of_b = corners(order_[b]);
-        if (!touch(box_around(of_a), box_around(of_b), thinnest_ / 2)) return;
+        const Corners of_a = corners(a), of_b = corners(b);
         if (std::find_first_of(of_a.begin(), of_a.end(), of_b.begin(), of_b.end()) != of_a.end()) return;
         const Approach approach(of_a, of_b);
         if (approach.distance <= least_ || !(approach.distance < thinnest_)) return;
-        if (are_joined(order_[a], order_[b], approach)) return;
+        if (are_joined(a, b, approach)) return;
         const tbb::spin_mutex::scoped_lock lock(mutex_);
         thinnest_ = min_or_second(approach.distance, thinnest_.load());
     }
@@ -198,7 +135,7 @@ class WallSearch {
     void link() {
         if (edges_->next.empty()) edges_ = &(own_edges_ = link_edges(solid_.mesh));
         constexpr uint32_t none = 0xffffffffu;
-        faces_.assign(order_.size(), none);
+        faces_.assign(normals_.size(), none);
         for (uint32_t first = 0; first < faces_.size(); ++first) {
             if (faces_[first] != none) continue;
             faces_[first] = first;
@@ -231,9 +168,7 @@ class WallSearch {
     MeshEdges own_edges_;
     std::vector<uint32_t> faces_;   // of each triangle the first one of its flat face
     std::vector<uint64_t> joints_;  // two faces with a common edge, ascending
-    std::vector<uint32_t> order_;   // of triangles
-    std::vector<dvec3> normals_;    // in that order; 0: without an area
-    std::vector<Bound> bounds_;     // of the nodes of a full binary tree: 2 n and 2 n + 1 are under n, the root is 1
+    std::vector<dvec3> normals_;    // of triangles; 0: without an area
     std::once_flag linked_;
     tbb::spin_mutex mutex_;
 };
