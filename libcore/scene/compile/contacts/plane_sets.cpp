@@ -13,7 +13,11 @@ bool PlaneSets::join(uint32_t a, uint32_t b) {
     const FlatFace& plane = faces_[kept.largest];
     for (const uint32_t i : added.members) {
         const FlatFace& face = faces_[i];
-        if (farthest_from(plane.normal, plane.offset, face) > test_.tolerance(plane, face)) return false;
+        if (!test_.lies_in(plane, face)) return false;
+        const auto apart = apart_.find(i);
+        if (apart != apart_.end())
+            for (const uint32_t other : apart->second)
+                if (root(other) == stays) return false;
         const auto known = kept.along.find(face.solid);
         if (known != kept.along.end() && known->second != (dot(face.normal, plane.normal) > 0)) return false;
     }
