@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <random>
 #include <set>
 
 #include "scene/compile/solids/placed_bodies.h"
 #include "scene/compile/solids/smallest_part.h"
 #include "scene/description/rotation.h"
+#include "scene/readers/read_scene.h"
 #include "testing/support/scene.h"
 #include "testing/support/scene_samples.h"
 
@@ -340,6 +342,163 @@ TEST(Contacts, AGapThatFloatWouldCloseTakesDouble) {
     const SmallestPart part = smallest_part(source);
     EXPECT_LT(part.share, least_share(Precision::single_));
     EXPECT_EQ(part.what, "/objects/1: o1: its distance from /objects/0");
+}
+
+/// Two bodies whose faces lie at no distance or up to a hundredth apart, then a third one that comes near neither.
+class ThreeBodies {
+  public:
+    explicit ThreeBodies(uint64_t seed) : random_(seed) {
+        const int digits[] = {7, 9, as_float, exact, exact};
+        turned_ = pick(3) != 0;
+        bodies_ = Bodies(turned_ ? seed : 0, pick(2) * between_powers(-2, 2), digits[pick(5)]);
+        if (!turned_) bodies_.rotation = Rotation(dvec3(0));
+        gap_ = pick(4) == 0 ? 0 : between_powers(-9, -2);
+        add_below(pick(5));
+        add_above(pick(3));
+    }
+
+    /// Adds a body of any size, as far as that and the others' sizes and more.
+    void add_third() {
+        const double size = between_powers(-3, 3);
+        const dvec3 way = bodies_.rotation(normalized(dvec3(between(-0.7, 0.7), between(-0.7, 0.7), 1)));
+        const dvec3 center = bodies_.move + way * (2 * (size + size_) + between_powers(-2, 11.5));
+        if (pick(2) == 0) {
+            test::add_object(bodies_.scene, SphereObject{center, size}, 0);
+        } else {
+            test::add_solid(bodies_.scene, PlatonicSolid::cube, center, size, dvec3(between(0, 90), between(0, 90), 0));
+        }
+    }
+    const SceneDescription& scene() const { return bodies_.scene; }
+
+  private:
+    int pick(int count) { return int(random_() % uint64_t(count)); }
+    double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+    double between_powers(double low, double high) { return std::pow(10, between(low, high)); }
+
+    void add_below(int kind) {
+        const double half = between_powers(-1, 1);
+        size_ += half;
+        const dvec3 normal = bodies_.rotation(dvec3(0, 0, 1));
+        if (kind == 0) bodies_.floor(half);
+        if (kind == 1) bodies_.box({-half, -half, -0.7 * half}, {half, half, 0});
+        if (kind == 2) test::add_object(bodies_.scene, DiskObject{bodies_.placed(dvec3(0)), normal, half}, 0);
+        if (kind == 3)
+            test::add_object(bodies_.scene, DiskObject::plane(normal, dot(normal, bodies_.placed(dvec3(0)))), 0);
+        if (kind == 4) add_cube(-half, half);
+    }
+    void add_above(int kind) {
+        const double half = between_powers(-1, 1);
+        size_ += half;
+        if (kind == 0) bodies_.box({-half, -0.6 * half, gap_}, {half, half, gap_ + 0.3 * half});
+        if (kind == 1) bodies_.quad({-half, -0.6 * half, gap_}, {1.7 * half, 0, 0}, {0, 2 * half, 0});
+        if (kind == 2) add_cube(gap_ + half, half);
+    }
+    /// A described cube with its middle at (0, 0, z), as turned as the others are about the vertical axis alone.
+    void add_cube(double z, double half) {
+        const dvec3 rotation = turned_ ? dvec3(0) : dvec3(0, 0, between(0, 90));
+        test::add_solid(bodies_.scene, PlatonicSolid::cube, bodies_.placed({0, 0, z}), half * std::sqrt(3.0), rotation);
+    }
+
+    std::mt19937_64 random_;
+    Bodies bodies_;
+    bool turned_ = false;
+    double gap_ = 0, size_ = 0;
+};
+
+/// The parts of two solids on planes that both have, as numbers.
+std::set<std::pair<uint32_t, uint32_t>> parts_in_contact(const Contacts& contacts) {
+    std::set<std::pair<uint32_t, uint32_t>> parts;
+    for (const PartOnPlane& x : contacts.solids[0].parts)
+        for (const PartOnPlane& y : contacts.solids[1].parts)
+            if (x.plane == y.plane) parts.insert({x.part, y.part});
+    return parts;
+}
+
+TEST(Contacts, WhatComesNearNeitherOfTwoBodiesChangesNoContactOfTheirs) {
+    size_t touching = 0, apart = 0, refused = 0;
+    for (uint64_t seed = 0; seed < 4000; ++seed) {
+        ThreeBodies bodies(seed);
+        const SceneSource two = gather_scene(bodies.scene());
+        const auto parts = parts_in_contact(two.bodies->contacts);
+        ++(parts.empty() ? apart : touching);
+        bodies.add_third();
+        try {
+            const SceneSource three = gather_scene(bodies.scene());
+            ASSERT_EQ(parts_in_contact(three.bodies->contacts), parts) << seed;
+        } catch (const Error& error) {
+            ++refused;
+            const std::string what = error.what();
+            ASSERT_TRUE(what.find("/objects/1: o1 is ") != std::string::npos &&
+                        what.find("/objects/0: ") != std::string::npos &&
+                        what.find("double precision does not hold that gap") != std::string::npos)
+                << seed << ": " << what;
+            const auto number_after = [&](const char* text) {
+                return std::atof(what.c_str() + what.find(text) + std::strlen(text));
+            };
+            ASSERT_LE(number_after(": o1 is "), 0x1p-47 * number_after(" that reaches ")) << seed << ": " << what;
+        }
+    }
+    EXPECT_GT(touching, 1000u);
+    EXPECT_GT(apart, 1000u);
+    EXPECT_GT(refused, 10u);
+}
+
+TEST(Contacts, ABodyThatFliesOffLaterChangesNone) {
+    const auto film = [](const std::string& moon) {
+        return read_scene_text(R"({"materials": {"m": {}}, "lights": [{"position": [0, 0, 9]}], "objects": [
+            {"solid": "box", "size": [2, 1, 1], "center": [0, 0, 0], "material": "m"},
+            {"solid": "box", "size": [2, 1, 1], "center": [0, 1.0004, 0], "material": "m"},
+            {"solid": "sphere", "radius": 1, "material": "m", "center": )" +
+                                   moon + "}]}",
+                               "film.json", "");
+    };
+    const SceneSource source = gather_scene(film(R"({"keys": [[0, [9, 0, 0]], [9, [9000, 0, 0]]]})"));
+    EXPECT_TRUE(source.bodies->contacts.planes.empty());
+    EXPECT_EQ(smallest_part(source).what.rfind("/objects/1: its distance from /objects/0", 0), 0u)
+        << smallest_part(source).what;
+    try {
+        gather_scene(film(R"({"keys": [[0, [9, 0, 0]], [9, [1e12, 0, 0]]]})"));
+        ADD_FAILURE() << "refused: double holds no gap of 4e-4 so far out";
+    } catch (const Error& error) {
+        EXPECT_EQ(
+            std::string(error.what()),
+            "frame 0: film.json: /objects/1: object1 is 0.0004 from /objects/0: object0, and double precision does "
+            "not hold that gap in a scene that reaches 5e+11 far; bring what is far away nearer, or close the gap");
+    }
+}
+
+/// A lies on C's face from above, B from below it, and what parts A from B is more than their own tolerance.
+TEST(Contacts, AThirdBodyJoinsNoTwoThatLieOverOneAnotherApart) {
+    Bodies bodies;
+    bodies.quad({-100, -100, 0}, {200, 0, 0}, {0, 200, 0});
+    bodies.box({-1, -1, 4e-5}, {1, 1, 1});
+    bodies.box({-1, -1, -1}, {1, 1, -3e-5});
+    EXPECT_EQ(touching(gathered(bodies).bodies->contacts), (std::set<std::pair<uint32_t, uint32_t>>{{0, 2}}));
+    Bodies beside;
+    beside.quad({-100, -100, 0}, {200, 0, 0}, {0, 200, 0});
+    beside.box({-1, -1, 4e-5}, {1, 1, 1});
+    beside.box({2, -1, -1}, {4, 1, -3e-5});
+    EXPECT_EQ(touching(gathered(beside).bodies->contacts),
+              (std::set<std::pair<uint32_t, uint32_t>>{{0, 1}, {0, 2}, {1, 2}}));
+}
+
+TEST(Contacts, DescribedBoxesOfSevenDigitsTouch) {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> place(10, 20), side(0.1, 1);
+    for (int i = 0; i < 200; ++i) {
+        const double z = place(random), low = side(random), high = side(random);
+        const auto ends_in_zeros = [](double x) { return std::remainder(std::round(x * 1e5), 100) == 0; };
+        if (ends_in_zeros(z - low / 2) || ends_in_zeros(z + high / 2)) continue;  // 5 digits say nothing of 7
+        const auto box = [&](double center, double size) {
+            return R"({"solid": "box", "material": "m", "size": [1, 1, )" + std::to_string(written(size, 7)) +
+                   R"(], "center": [3, 4, )" + std::to_string(written(center, 7)) + "]}";
+        };
+        const SceneDescription scene =
+            read_scene_text(R"({"materials": {"m": {}}, "lights": [{"position": [0, 0, 30]}], "objects": [)" +
+                                box(z - low / 2, low) + ", " + box(z + high / 2, high) + "]}",
+                            "boxes.json", "");
+        EXPECT_EQ(gather_scene(scene).bodies->contacts.planes.size(), 5u) << "four sides, and where they touch, " << i;
+    }
 }
 
 template <class Real>

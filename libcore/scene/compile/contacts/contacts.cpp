@@ -32,8 +32,8 @@ class ContactSearch {
           polyhedra_(polyhedra),
           sizes_(sizes),
           range_(source, normalization.factor),
-          rounding_(4 * RealTraits<double>::unit * normalization.extent),
-          exact_(4 * rounding_),
+          rounding_(2 * RealTraits<double>::unit * normalization.extent),
+          exact_(8 * rounding_),
           limits_(limits),
           as_given_(range_, 0),
           as_moved_(range_, exact_) {}
@@ -43,7 +43,8 @@ class ContactSearch {
         find_bodies();
         if (faces_.size() == 0) return std::move(contacts_);
         move_into_contact();
-        refuse_what_double_closes();
+        for (const NearPair& pair : contacts_.near)
+            if (pair.gap <= 2 * exact_) refuse_gap(pair.solids[0], pair.solids[1], pair.gap);
         bind_what_coincides();
         return std::move(contacts_);
     }
@@ -53,8 +54,8 @@ class ContactSearch {
         double distance;
         uint32_t first, second;
     };
-    static constexpr double reach = 4;    // of 2^-20 M: faces that come as near know of one another's planes
-    static constexpr double told = 16;    // tolerances without digits: up to there gaps are told of
+    static constexpr double reach = 4;     // of 2^-20 M: faces that come as near know of one another's planes
+    static constexpr double told = 16;     // tolerances without digits: up to there gaps are told of
     static constexpr double above = 1.01;  // more than what rounding and a gap add to half a side
 
     // ---- bodies and faces
@@ -97,8 +98,8 @@ class ContactSearch {
         farthest_.resize(count);
         pads_.resize(count);
         for (uint32_t i = 0; i < count; ++i)
-            pads_[i] = max_or_second(contacts_.solids[i].reach.own,
-                                     max_or_second(told * above * tau_of(i), least_told_ / 2));
+            pads_[i] =
+                max_or_second(contacts_.solids[i].reach.own, max_or_second(told * above * tau_of(i), least_told_ / 2));
         const NearSolids near(boxes, pads_);
         tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
             size_t asked = 0;
@@ -120,8 +121,7 @@ class ContactSearch {
     double most_between(uint32_t a, uint32_t b) const {
         const ContactReach &first = contacts_.solids[a].reach, &second = contacts_.solids[b].reach;
         if (range_.given()) return min_or_second(first.own, second.own);
-        const double written =
-            most_leverage * (length(first.rounding.half_unit) + length(second.rounding.half_unit));
+        const double written = most_leverage * (length(first.rounding.half_unit) + length(second.rounding.half_unit));
         return min_or_second(max_or_second(above * (tau_of(a) + tau_of(b)), written),
                              min_or_second(first.most, second.most));
     }
@@ -183,15 +183,14 @@ class ContactSearch {
     /// any brings all.
     std::vector<FlatFace> faces_that_may_touch(ContactBody& body, const FaceTest& test, size_t& asked) const {
         const SourceSolid& from = source_.solids[body.solid];
-        std::vector<FlatFace> faces = body.planes            ? polyhedron_faces(body, *from.polyhedron, !test.exact())
-                                      : test.exact()         ? single_faces(body)
+        std::vector<FlatFace> faces = body.planes           ? polyhedron_faces(body, *from.polyhedron, !test.exact())
+                                      : test.exact()        ? single_faces(body)
                                       : body.place->endless ? endless_faces(body)
-                                                             : joined_faces(body);
+                                                            : joined_faces(body);
         if (!may_overlap_itself(body.solid)) {
             if (!body.planes)
-                std::erase_if(faces, [&](const FlatFace& face) {
-                    return !may_come_near_another(face.in_frame, body.solid);
-                });
+                std::erase_if(faces,
+                              [&](const FlatFace& face) { return !may_come_near_another(face.in_frame, body.solid); });
             faces.shrink_to_fit();
             return faces;
         }
@@ -237,18 +236,32 @@ class ContactSearch {
         move_bodies(sets);
     }
 
-    /// Refuses gaps that stay open and that rounding in double closes.
-    void refuse_what_double_closes() const {
-        for (const NearPair& pair : contacts_.near) {
-            if (pair.gap > 2 * exact_) continue;
-            const SourceSolid &first = source_.solids[pair.solids[0]], &second = source_.solids[pair.solids[1]];
-            throw scene_error(*source_.description, second.place,
-                              fmt::format("{} is {:.2g} from {}: {}, and double precision does not hold that gap in a "
-                                          "scene that reaches {:.2g} far",
-                                          name_of(second), pair.gap / normalization_.factor, first.place,
-                                          name_of(first), normalization_.extent / normalization_.factor),
-                              "bring what is far away nearer, or close the gap");
-        }
+    /// Refuses a gap that stays open and that rounding in double closes.
+    [[noreturn]] void refuse_gap(uint32_t a, uint32_t b, double gap) const {
+        const SourceSolid &first = source_.solids[std::min(a, b)], &second = source_.solids[std::max(a, b)];
+        throw scene_error(
+            *source_.description, second.place,
+            fmt::format("{} is {:.2g} from {}: {}, and double precision does not hold that gap in a scene "
+                        "that reaches {:.2g} far",
+                        name_of(second), gap / normalization_.factor, first.place, name_of(first),
+                        normalization_.extent / normalization_.factor),
+            "bring what is far away nearer, or close the gap");
+    }
+
+    /// The distance, as given, of faces in the frame that coincide only since what is far away makes rounding more than
+    /// their tolerance; 0 of others.
+    double closed_gap(const FlatFace& a, const FlatFace& b) const {
+        const double most = min_or_second(a.body->reach.most, b.body->reach.most);
+        const double tau = range_.tau(*a.body->place, *b.body->place);
+        if (min_or_second(tau, most) > 4 * exact_) return 0;
+        for (const uint32_t plane : joined_[number_of(a)])
+            for (const uint32_t other : joined_[number_of(b)])
+                if (plane == other) return 0;
+        const FlatFace first = seen(a, true, source_.solids[a.solid]), second = seen(b, true, source_.solids[b.solid]);
+        const double gap = as_given_.distance(first, second);
+        constexpr double alone = 0x1p-29;  // of tau: 16 u M of double in a scene of the two
+        const bool both_endless = first.is_endless() && second.is_endless();
+        return both_endless && as_given_.touching(first, second, gap) || gap <= alone * tau ? 0 : gap;
     }
 
     /// Finds the planes of what now lies in one plane, to within rounding: the faces that were moved, and those that
@@ -378,6 +391,10 @@ class ContactSearch {
             });
             pairs_.insert(pairs_.end(), found.touching.begin(), found.touching.end());
             parted_.insert(parted_.end(), found.parted.begin(), found.parted.end());
+            if (test.exact() && !found.near.empty()) {
+                const Pair& closed = found.near.front();
+                refuse_gap(faces_[closed.first].solid, faces_[closed.second].solid, closed.distance);
+            }
             for (const Pair& near : found.near)
                 add_near(faces_[near.first], faces_[near.second], near.distance, contacts_.near);
         }
@@ -441,6 +458,8 @@ class ContactSearch {
         if (test.touching(a, b, distance)) {
             if (!one_solid || !test.exact() || a.body->flat || FaceTest::overlapping(a, b))
                 found.touching.push_back({distance, i, j});
+            if (const double gap = one_solid || !test.exact() ? 0 : closed_gap(a, b); gap > 0)
+                found.near.push_back({gap, i, j});
         } else if (!test.exact() && !one_solid && distance <= told_between(a, b) && boxes_touch(a, b, 2 * distance) &&
                    magnitude(dot(a.normal, b.normal)) > 0.5) {
             if (distance <= farthest_[a.solid] + farthest_[b.solid] && FaceTest::overlapping(a, b))
@@ -464,7 +483,8 @@ class ContactSearch {
     void add_near(const FlatFace& a, const FlatFace& b, double gap, std::vector<NearPair>& to) {
         const uint32_t first = std::min(a.solid, b.solid);
         const uint32_t second = std::max(a.solid, b.solid);
-        const bool joined = gap <= warned_between(a, b) && 1.1 * gap <= min_or_second(a.body->reach.most, b.body->reach.most);
+        const bool joined =
+            gap <= warned_between(a, b) && 1.1 * gap <= min_or_second(a.body->reach.most, b.body->reach.most);
         const auto known =
             near_solids_.try_emplace((uint64_t(first) << 32 | second) << 1 | (&to == &contacts_.near), to.size());
         if (known.second)
@@ -505,7 +525,7 @@ class ContactSearch {
             const PlaneSets::Set& set = sets.set(i);
             const FlatFace& largest = faces_[set.largest];
             for (const uint32_t member : set.members) plane_[member] = uint32_t(equations_.size());
-            const FlatFace there = framed(largest, source_.solids[largest.solid]);
+            const FlatFace there = seen(largest, false, source_.solids[largest.solid]);
             equations_.push_back({there.normal, there.offset});
             areas_.push_back(largest.area);
             middles_.push_back(there.middle);
@@ -538,8 +558,11 @@ class ContactSearch {
                 if (body.welded[i] != no_vertex)
                     farthest[b] = max_or_second(length(body.points[i] - given[i]), farthest[b]);
         });
+        joined_.resize(bodies_.size());
         for (size_t b = 0; b < bodies_.size(); ++b) {
             ContactBody& body = bodies_[b];
+            for (const BoundFace& face : bound[b])
+                if (joined_[b].empty() || joined_[b].back() != face.plane) joined_[b].push_back(face.plane);
             for (const BoundFace& face : left[b]) leave(face, sets);
             if (!(farthest[b] > 0)) continue;
             body.moved = true;
@@ -671,13 +694,14 @@ class ContactSearch {
     Contacts contacts_;
     const ContactLimits limits_;
     const FaceTest as_given_, as_moved_;  // before and after things are moved into one plane
-    std::vector<BodyPlace> places_;  // of each solid; with the next two
-    std::vector<double> farthest_;   // no two faces that touch the same are farther apart than the sum of theirs
+    std::vector<BodyPlace> places_;       // of each solid; with the next two
+    std::vector<double> farthest_;        // no two faces that touch the same are farther apart than the sum of theirs
     std::vector<double> pads_;
     double least_told_ = 0;  // gaps that are told of whatever the bodies
     std::optional<NearSolids> near_;
     std::vector<ContactBody> bodies_;
-    std::vector<std::vector<FlatFace>> found_;  // of each body
+    std::vector<std::vector<FlatFace>> found_;   // of each body
+    std::vector<std::vector<uint32_t>> joined_;  // of each body the planes into which it was moved
     FaceTree tree_;
     const FaceList& faces_ = tree_.faces;
     mutable std::atomic<size_t> looked_at_{0};  // pairs of boxes in this sweep

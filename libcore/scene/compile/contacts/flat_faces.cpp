@@ -38,8 +38,20 @@ void place_corners(FlatFace& face) {
     face.level = level_of(face.box);
 }
 
+/// The plane without end that a face stands for.
+void place_endless(FlatFace& face) {
+    place_corners(face);
+    face.normal = normalized(face.body->place->endless->normal);
+    face.area = INFINITY;
+    face.level = -1;
+    for (int axis = 0; axis < 3; ++axis)
+        if (magnitude(face.normal[axis]) == 1) face.level = axis;
+    face.box = {dvec3(-INFINITY), dvec3(INFINITY)};
+}
+
 /// The plane of a mesh's face that has its triangles and corners.
 void place_triangles(FlatFace& face) {
+    if (face.is_endless()) return place_endless(face);
     dvec3 area(0);
     for (const uint32_t t : face.parts) {
         const auto corner = points_of(face.points(), face.body->facets[t]);
@@ -316,20 +328,13 @@ std::vector<FlatFace> polyhedron_faces(const ContactBody& body, const SolidObjec
 
 std::vector<FlatFace> endless_faces(ContactBody& body) {
     make_room(body);
-    FlatFace face = face_of(body, body.near, true);
-    face.normal = normalized(body.place->endless->normal);
-    face.area = INFINITY;
-    face.level = -1;
-    for (int axis = 0; axis < 3; ++axis)
-        if (magnitude(face.normal[axis]) == 1) face.level = axis;
-    face.middle = dvec3(0), face.offset = 0;
-    face.box = {dvec3(-INFINITY), dvec3(INFINITY)};
-    return {face};
+    return {face_of(body, body.near, true)};
 }
 
-FlatFace framed(const FlatFace& face, const SourceSolid& solid) {
-    if (!face.as_given) return face;
-    FlatFace there = empty_face(*face.body, false);
+FlatFace seen(const FlatFace& face, bool as_given, const SourceSolid& solid) {
+    if (face.as_given == as_given) return face;
+    FlatFace there = empty_face(*face.body, as_given);
+    there.number = face.number;
     there.parts = face.parts;
     there.corners = face.corners;
     if (!solid.polyhedron) {
@@ -338,7 +343,7 @@ FlatFace framed(const FlatFace& face, const SourceSolid& solid) {
     }
     const std::vector<Polyhedron::Face>& faces = polyhedron_of(*solid.polyhedron).faces;
     const auto is_this = [&](const Polyhedron::Face& other) { return other.id == face.parts[0]; };
-    return polyhedron_face(*face.body, *solid.polyhedron, *std::find_if(faces.begin(), faces.end(), is_this), false);
+    return polyhedron_face(*face.body, *solid.polyhedron, *std::find_if(faces.begin(), faces.end(), is_this), as_given);
 }
 
 double farthest_from(const FlatFace& plane, const FlatFace& face) {

@@ -15,10 +15,10 @@ namespace cistula {
 /// Where a body is by its own numbers alone, times the frame's factor, which is a power of two: nothing that is
 /// elsewhere in the scene changes it.
 struct BodyPlace {
-    glm::dvec3 anchor{0};       // a point of it, from the file's origin
-    Box span;                   // around it, from the anchor; of a plane without end empty
-    double largest = 0;         // coordinate from the file's origin
-    double scaled = 0;          // radius of a described solid
+    glm::dvec3 anchor{0};                 // a point of it, from the file's origin
+    Box span;                             // around it, from the anchor; of a plane without end empty
+    double largest = 0;                   // coordinate from the file's origin
+    double scaled = 0;                    // radius of a described solid
     const DiskObject* endless = nullptr;  // the plane without end that it is, if it is one
 
     BodyPlace() = default;
@@ -32,7 +32,7 @@ struct BodyPlace {
 /// A solid that comes near another one.
 struct ContactBody {
     uint32_t solid = 0;
-    bool closed = false;               // it has an inside
+    bool closed = false;  // it has an inside
     ContactReach reach;
     const BodyPlace* place = nullptr;
     double pad = 0;                       // by how much its boxes are grown where what comes near is looked for
@@ -149,8 +149,8 @@ std::vector<FlatFace> polyhedron_faces(const ContactBody& body, const SolidObjec
 /// The one face of a plane without end, as given.
 std::vector<FlatFace> endless_faces(ContactBody& body);
 
-/// A face as given where it lies in the frame.
-FlatFace framed(const FlatFace& face, const SourceSolid& solid);
+/// A face as it is given, or in the frame.
+FlatFace seen(const FlatFace& face, bool as_given, const SourceSolid& solid);
 
 /// The largest distance of a face's corners from another's plane, both as given or both in the frame.
 double farthest_from(const FlatFace& plane, const FlatFace& face);

@@ -33,8 +33,8 @@ bool are_parallel(const dvec3& a, const dvec3& b) {
     return length(dot(a, b) < 0 ? a + b : a - b) <= 8 * RealTraits<double>::unit;
 }
 
-/// By how much more than its corners a plane is moved elsewhere where these are off: where p is the sum of weights times
-/// corners, as the plane nearest to them has it, by the sum of the weights' sizes.
+/// By how much more than its corners a plane is moved elsewhere where these are off: where p is the sum of weights
+/// times corners, as the plane nearest to them has it, by the sum of the weights' sizes.
 class Leverage {
   public:
     explicit Leverage(const FlatFace& plane) : plane_(plane) {
@@ -102,7 +102,8 @@ bool FaceTest::lies_in(const FlatFace& plane, const FlatFace& face) const {
     if (exact()) return farthest <= exact_;
     const Rounding written = rounding(plane, face);
     if (farthest <= tolerance(plane, face, written)) return true;
-    if (range_.given() || farthest > tolerance(plane, face, {most_leverage * written.plane, written.face})) return false;
+    if (range_.given() || farthest > tolerance(plane, face, {most_leverage * written.plane, written.face}))
+        return false;
     const Leverage leverage(plane);
     const dvec3 way = way_between(plane, face);
     return std::all_of(face.corners.begin(), face.corners.end(), [&](uint32_t corner) {
@@ -136,8 +137,7 @@ bool boxes_touch(const FlatFace& a, const FlatFace& b, double pad) {
 bool FaceTest::overlapping(const FlatFace& a, const FlatFace& b) {
     if (a.is_endless() || b.is_endless()) return true;
     const std::vector<Triangle> of_a = triangles_of(a, dvec3(0)), of_b = triangles_of(b, way_between(a, b));
-    const double least =
-        0x1p-18 * min_or_second(a.body->place->half_side(), b.body->place->half_side());
+    const double least = 0x1p-18 * min_or_second(a.body->place->half_side(), b.body->place->half_side());
     const bool one = &a == &b;
     if (of_a.size() * of_b.size() <= few_pairs) {
         for (size_t j = 0; j < of_b.size(); ++j)
