@@ -482,6 +482,77 @@ TEST(Contacts, AThirdBodyJoinsNoTwoThatLieOverOneAnotherApart) {
               (std::set<std::pair<uint32_t, uint32_t>>{{0, 1}, {0, 2}, {1, 2}}));
 }
 
+/// A large body that touches A alone carries A neither onto B nor past it.
+TEST(Contacts, NoFaceIsMovedOntoOrPastAnother) {
+    for (const double step : {2e-5, 3e-5}) {
+        Bodies bodies;
+        bodies.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        bodies.quad({0.2, 0.2, 2e-5}, {0.5, 0, 0}, {0, 0.5, 0});
+        bodies.box({1, -500, step}, {1001, 500, 1000});
+        EXPECT_TRUE(touching(gathered(bodies).bodies->contacts).empty()) << step;
+    }
+}
+
+/// A turned body's box along the axes reaches over others that are far from it.
+TEST(Contacts, FacesOfOnePlaneThatLieApartDoNotTouch) {
+    const auto solids = [](const std::string& third) {
+        return gather_scene(
+            read_scene_text(R"({"materials": {"m": {}}, "lights": [{"position": [0, 0, 9]}], "objects": [
+            {"solid": "box", "size": [1, 1, 1], "center": [0, 0, -0.5], "material": "m"},
+            {"solid": "box", "size": [1, 1, 2e-4], "center": [0, 0, 1.0025e-4], "material": "m"})" +
+                                third + "]}",
+                            "apart.json", ""));
+    };
+    const std::string slab = R"(, {"solid": "box", "size": [1000, 1000, 1000], "rotate": [0, 0, 45], "material": "m",
+                                   "center": [512, 512, -499.9999976]})";
+    const auto two = parts_in_contact(solids("").bodies->contacts);
+    EXPECT_FALSE(two.empty());
+    EXPECT_EQ(parts_in_contact(solids(slab).bodies->contacts), two);
+}
+
+/// The distance of a box on a card from the card's other side is the card's thickness, and no gap.
+TEST(Contacts, AThicknessIsNoGap) {
+    const SceneSource source = gather_scene(read_scene_text(
+        R"({"materials": {"m": {}}, "lights": [{"position": [0, 0, 9]}], "objects": [
+            {"solid": "box", "size": [4, 4, 0.001], "center": [0, 0, -0.0005], "material": "m"},
+            {"solid": "box", "size": [1, 1, 1], "center": [0, 0, 0.5], "material": "m"},
+            {"solid": "sphere", "radius": 1e12, "center": [0, 0, 0], "material": "m"}]})",
+        "card.json", ""));
+    EXPECT_EQ(touching(source.bodies->contacts), (std::set<std::pair<uint32_t, uint32_t>>{{0, 1}}));
+}
+
+TEST(Contacts, DisksAndBallsThatDoubleMakesPointsOfAreRefused) {
+    for (const char* small : {R"("disk": {"center": [0, 0, 0], "normal": [0, 0, 1], "radius": 1})",
+                              R"("solid": "sphere", "radius": 1, "center": [0, 0, 0])"})
+        try {
+            gather_scene(read_scene_text(std::string(R"({"materials": {"m": {}}, "objects": [{"material": "m", )") +
+                                             small +
+                                             R"(}, {"solid": "box", "size": [1e17, 1e17, 1e17], "center": [1e17, 0, 0],
+                                                   "material": "m"}]})",
+                                         "far.json", ""));
+            ADD_FAILURE() << small;
+        } catch (const Error& error) {
+            EXPECT_EQ(std::string(error.what()).rfind("far.json: /objects/0: so small beside the scene", 0), 0u)
+                << error.what();
+        }
+}
+
+/// At its keys a box is far from another, over which it passes between them.
+TEST(Contacts, TheSmallestGapBetweenTwoKeysTakesDouble) {
+    const auto part = [](const std::string& height) {
+        return smallest_part(gather_scene(read_scene_text(
+            R"({"materials": {"m": {}}, "lights": [{"position": [0, 0, 9]}], "objects": [
+            {"solid": "box", "size": [2, 2, 1], "center": [0, 0, -0.5], "material": "m"},
+            {"solid": "box", "size": [1, 1, 1], "material": "m", "center": {"keys": [[0, [-7, 0, )" +
+                height + "]], [10, [7, 0, " + height + "]]]}}]}",
+            "film.json", "")));
+    };
+    EXPECT_GT(part("0.6").share, least_share(Precision::single_));
+    EXPECT_EQ(part("0.6").what, "/objects/1: its inradius at frame 0");
+    EXPECT_LT(part("0.500005").share, least_share(Precision::single_));
+    EXPECT_EQ(part("0.500005").what, "/objects/1: its distance from /objects/0 at frame 4");
+}
+
 TEST(Contacts, DescribedBoxesOfSevenDigitsTouch) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> place(10, 20), side(0.1, 1);

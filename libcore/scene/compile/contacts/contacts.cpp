@@ -43,8 +43,6 @@ class ContactSearch {
         find_bodies();
         if (faces_.size() == 0) return std::move(contacts_);
         move_into_contact();
-        for (const NearPair& pair : contacts_.near)
-            if (pair.gap <= 2 * exact_) refuse_gap(pair.solids[0], pair.solids[1], pair.gap);
         bind_what_coincides();
         return std::move(contacts_);
     }
@@ -233,7 +231,17 @@ class ContactSearch {
         find_pairs(as_given_);
         for (const Pair& pair : parted_) sets.part(pair.first, pair.second);
         join_pairs(sets, as_given_);
+        for (const Pair& pair : closed_)
+            if (!joins(sets, pair.first, pair.second) && !joins(sets, pair.second, pair.first))
+                refuse_gap(faces_[pair.first].solid, faces_[pair.second].solid, pair.distance);
         move_bodies(sets);
+    }
+
+    /// Whether a face shares a plane with any of another's solid, so that between the two is that solid itself.
+    bool joins(PlaneSets& sets, uint32_t face, uint32_t other) const {
+        const std::vector<uint32_t>& members = sets.set(sets.root(face)).members;
+        return std::any_of(members.begin(), members.end(),
+                           [&](uint32_t i) { return faces_[i].solid == faces_[other].solid; });
     }
 
     /// Refuses a gap that stays open and that rounding in double closes.
@@ -261,7 +269,9 @@ class ContactSearch {
         const double gap = as_given_.distance(first, second);
         constexpr double alone = 0x1p-29;  // of tau: 16 u M of double in a scene of the two
         const bool both_endless = first.is_endless() && second.is_endless();
-        return both_endless && as_given_.touching(first, second, gap) || gap <= alone * tau ? 0 : gap;
+        const bool holds = gap <= alone * tau || gap > 4 * exact_ || !FaceTest::meeting(first, second, 2 * gap) ||
+                           (both_endless && as_given_.touching(first, second, gap));
+        return holds ? 0 : gap;
     }
 
     /// Finds the planes of what now lies in one plane, to within rounding: the faces that were moved, and those that
@@ -396,6 +406,8 @@ class ContactSearch {
                 refuse_gap(faces_[closed.first].solid, faces_[closed.second].solid, closed.distance);
             }
             for (const Pair& near : found.near)
+                if (near.distance <= 2 * exact_) closed_.push_back(near);
+            for (const Pair& near : found.near)
                 add_near(faces_[near.first], faces_[near.second], near.distance, contacts_.near);
         }
     }
@@ -461,7 +473,7 @@ class ContactSearch {
             if (const double gap = one_solid || !test.exact() ? 0 : closed_gap(a, b); gap > 0)
                 found.near.push_back({gap, i, j});
         } else if (!test.exact() && !one_solid && distance <= told_between(a, b) && boxes_touch(a, b, 2 * distance) &&
-                   magnitude(dot(a.normal, b.normal)) > 0.5) {
+                   magnitude(dot(a.normal, b.normal)) > 0.5 && FaceTest::meeting(a, b, 2 * distance)) {
             if (distance <= farthest_[a.solid] + farthest_[b.solid] && FaceTest::overlapping(a, b))
                 found.parted.push_back({distance, i, j});
             found.near.push_back({distance, i, j});
@@ -705,7 +717,7 @@ class ContactSearch {
     FaceTree tree_;
     const FaceList& faces_ = tree_.faces;
     mutable std::atomic<size_t> looked_at_{0};  // pairs of boxes in this sweep
-    std::vector<Pair> pairs_, parted_;
+    std::vector<Pair> pairs_, parted_, closed_;
     std::unordered_map<uint64_t, size_t> near_solids_;
     std::vector<uint32_t> plane_;  // of each face
     std::vector<PlaneEquation> equations_;

@@ -346,6 +346,10 @@ FlatFace seen(const FlatFace& face, bool as_given, const SourceSolid& solid) {
     return polyhedron_face(*face.body, *solid.polyhedron, *std::find_if(faces.begin(), faces.end(), is_this), as_given);
 }
 
+double signed_distance(const FlatFace& plane, const FlatFace& of, const dvec3& point) {
+    return dot(plane.normal, point + way_between(plane, of)) - plane.offset;
+}
+
 double farthest_from(const FlatFace& plane, const FlatFace& face) {
     const dvec3 way = way_between(plane, face);
     const std::vector<dvec3>& points = face.points();

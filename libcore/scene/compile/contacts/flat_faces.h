@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/box.h"
+#include "cistula/geometry/ray.h"
 #include "scene/compile/scene_source.h"
 #include "scene/compile/solids/compile_solids.h"
 #include "scene/trees/tree_build.h"
@@ -114,12 +115,12 @@ class NearSolids {
     bool meets_another(const Box& box, uint32_t solid) const {
         return any_near(box, solid, [](uint32_t) { return true; });
     }
-    /// Whether found(other) holds for another solid whose box meets one that is grown by a solid's pad; asks no further
-    /// once it does.
+    /// Whether found(other) holds for another solid whose box meets one that is grown by a solid's pad, if it is of
+    /// one; asks no further once it does.
     template <class Found>
     bool any_near(const Box& box, uint32_t solid, const Found& found) const {
         if (box.empty()) return false;
-        const Box grown = padded(box, pads_[solid]);
+        const Box grown = padded(box, solid == no_solid ? 0 : pads_[solid]);
         return any_in_box(tree_, grown, [&](uint32_t other) {
             return other != solid && touch(grown, boxes_[other], pads_[other]) && found(other);
         });
@@ -151,6 +152,9 @@ std::vector<FlatFace> endless_faces(ContactBody& body);
 
 /// A face as it is given, or in the frame.
 FlatFace seen(const FlatFace& face, bool as_given, const SourceSolid& solid);
+
+/// How far a point of `of` lies beyond a plane, both as given or both in the frame.
+double signed_distance(const FlatFace& plane, const FlatFace& of, const glm::dvec3& point);
 
 /// The largest distance of a face's corners from another's plane, both as given or both in the frame.
 double farthest_from(const FlatFace& plane, const FlatFace& face);

@@ -70,18 +70,44 @@ class Leverage {
     double xx_ = 0, xy_ = 0, yy_ = 0;
 };
 
-/// The triangles of a face, moved.
-std::vector<Triangle> triangles_of(const FlatFace& face, const dvec3& way) {
+/// The triangles of a face, moved, that meet a box.
+std::vector<Triangle> triangles_of(const FlatFace& face, const dvec3& way, const Box& box) {
     std::vector<Triangle> triangles;
     const auto add = [&](const TriangleCorners& corners) {
-        triangles.push_back(points_of(face.points(), corners));
-        for (dvec3& p : triangles.back()) p += way;
+        Triangle triangle = points_of(face.points(), corners);
+        for (dvec3& p : triangle) p += way;
+        if (touch(box_of(triangle), box, 0)) triangles.push_back(triangle);
     };
     if (!face.body->planes)
         for (const uint32_t t : face.parts) add(face.body->facets[t]);
     else
         for (size_t i = 2; i < face.corners.size(); ++i) add({face.corners[0], face.corners[i - 1], face.corners[i]});
     return triangles;
+}
+
+/// Whether triangles of two faces that lie near one plane, or of one face, overlap by more than `least` in every
+/// direction along it; below 0: are no farther apart.
+bool overlap_by(const FlatFace& a, const FlatFace& b, double least) {
+    if (a.is_endless() || b.is_endless()) return true;
+    const bool one = &a == &b;
+    const dvec3 way = way_between(a, b);
+    const double pad = 2 * reach(a, b);  // above all distances from the plane in which they may overlap
+    const std::vector<Triangle> of_b = triangles_of(b, way, padded(a.box, pad));
+    const std::vector<Triangle> of_a = triangles_of(a, dvec3(0), padded({b.box.low + way, b.box.high + way}, pad));
+    if (of_a.size() * of_b.size() <= few_pairs) {
+        for (size_t j = 0; j < of_b.size(); ++j)
+            for (size_t i = 0; i < (one ? j : of_a.size()); ++i)
+                if (overlap(of_a[i], of_b[j], least)) return true;
+        return false;
+    }
+    const bool swap = of_a.size() < of_b.size();
+    const std::vector<Triangle>&many = swap ? of_b : of_a, &few = swap ? of_a : of_b;
+    const Tree tree = tree_of(many.size(), [&](size_t i) { return padded(box_of(many[i]), pad); });
+    for (size_t j = 0; j < few.size(); ++j)
+        if (any_in_box(tree, box_of(few[j]),
+                       [&](uint32_t i) { return (!one || i < j) && overlap(many[i], few[j], least); }))
+            return true;
+    return false;
 }
 
 }  // namespace
@@ -126,7 +152,8 @@ bool FaceTest::touching(const FlatFace& a, const FlatFace& b, double distance) c
     if (distance > 2 * reach(a, b)) return false;
     const bool first = is_larger(a, b);
     const FlatFace &large = first ? a : b, &small = first ? b : a;
-    return boxes_touch(a, b, 2 * tolerance(large, small)) && lies_in(large, small);
+    const double most = tolerance(large, small);
+    return boxes_touch(a, b, 2 * most) && lies_in(large, small) && (exact() || meeting(a, b, 2 * most));
 }
 
 bool boxes_touch(const FlatFace& a, const FlatFace& b, double pad) {
@@ -135,25 +162,11 @@ bool boxes_touch(const FlatFace& a, const FlatFace& b, double pad) {
 }
 
 bool FaceTest::overlapping(const FlatFace& a, const FlatFace& b) {
-    if (a.is_endless() || b.is_endless()) return true;
-    const std::vector<Triangle> of_a = triangles_of(a, dvec3(0)), of_b = triangles_of(b, way_between(a, b));
-    const double least = 0x1p-18 * min_or_second(a.body->place->half_side(), b.body->place->half_side());
-    const bool one = &a == &b;
-    if (of_a.size() * of_b.size() <= few_pairs) {
-        for (size_t j = 0; j < of_b.size(); ++j)
-            for (size_t i = 0; i < (one ? j : of_a.size()); ++i)
-                if (overlap(of_a[i], of_b[j], least)) return true;
-        return false;
-    }
-    const bool swap = of_a.size() < of_b.size();
-    const std::vector<Triangle>&many = swap ? of_b : of_a, &few = swap ? of_a : of_b;
-    const double pad = 2 * reach(a, b);  // above all distances from the plane in which they may overlap
-    const Tree tree = tree_of(many.size(), [&](size_t i) { return padded(box_of(many[i]), pad); });
-    for (size_t j = 0; j < few.size(); ++j)
-        if (any_in_box(tree, padded(box_of(few[j]), pad),
-                       [&](uint32_t i) { return (!one || i < j) && overlap(many[i], few[j], least); }))
-            return true;
-    return false;
+    return overlap_by(a, b, 0x1p-18 * min_or_second(a.body->place->half_side(), b.body->place->half_side()));
+}
+
+bool FaceTest::meeting(const FlatFace& a, const FlatFace& b, double most) {
+    return overlap_by(a, b, -most);
 }
 
 bool FaceTest::lie_in_one_plane(const std::vector<FlatFace>& faces) const {

@@ -56,6 +56,9 @@ class FaceTest {
     /// Whether two faces overlap, or triangles of one: by more than 2^-18 of half the longest side of the smaller body.
     static bool overlapping(const FlatFace& a, const FlatFace& b);
 
+    /// Whether two faces meet along their planes, or are no farther apart there than `most`.
+    static bool meeting(const FlatFace& a, const FlatFace& b, double most);
+
     /// Whether all faces lie in the plane of the largest.
     bool lie_in_one_plane(const std::vector<FlatFace>& faces) const;
 

@@ -19,8 +19,8 @@ class PlaneSets {
     /// Says that two faces lie over one another and do not touch: no set has both.
     void part(uint32_t a, uint32_t b) { apart_[a].push_back(b), apart_[b].push_back(a); }
 
-    /// Makes one set of those of two faces. False if that would take a face beyond its tolerance of the plane, join two
-    /// that are parted, or put two opposite faces of a closed body into it.
+    /// Makes one set of those of two faces. False if that would take a face beyond its tolerance of the plane, or onto
+    /// or past one that it is parted from, or put two opposite faces of a closed body into it.
     bool join(uint32_t a, uint32_t b);
 
     struct Set {
@@ -31,6 +31,9 @@ class PlaneSets {
     Set& set(uint32_t root);
 
   private:
+    /// Whether a face that is moved into a plane still lies on its side of one that it is parted from.
+    bool stays_apart(const FlatFace& face, const FlatFace& plane, uint32_t other);
+
     const FaceList& faces_;
     const FaceTest& test_;
     UnionFind roots_;
