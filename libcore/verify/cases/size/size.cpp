@@ -129,14 +129,13 @@ SceneDescription hollow_cube(double wall) {
     scene.camera.target = {0, 0, 0.4};
     scene.camera.field_of_view = 36;
     add_checker(scene, glm::dvec2(0.5));
-    add_object(scene, floor_of_half(20));
+    add_object(scene, DiskObject::plane({0, 0, 1}, -1));
     TrianglesObject shell = triangulated_solid(solid_object(PlatonicSolid::cube, glm::dvec3(0), std::sqrt(3.0)));
     TrianglesObject hollow = shell;
     for (glm::dvec3& p : hollow.vertices) p = {0.5 * p.x, 0.5 * p.y, p.z > 0 ? 1 - wall : -0.5};
     const auto outer = uint32_t(shell.vertices.size());
     shell.vertices.insert(shell.vertices.end(), hollow.vertices.begin(), hollow.vertices.end());
     for (const auto& t : hollow.triangles) shell.triangles.push_back({t[0] + outer, t[2] + outer, t[1] + outer});
-    for (glm::dvec3& p : shell.vertices) p.z += 1.2;
     shell.uvs.clear();
     add_object(scene, shell, add_material(scene, glass(1.5, true)));
     return scene;
