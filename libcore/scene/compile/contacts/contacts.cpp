@@ -376,8 +376,8 @@ class ContactSearch {
 
     size_t number_of(const FlatFace& face) const { return size_t(face.body - bodies_.data()); }
 
-    /// Of the faces of a part: what touches, what lies over one another and touches only what a third body does, and
-    /// what nearly touches.
+    /// Pairs of faces, found in a part: those that touch, those that lie over one another apart, where a third one may
+    /// join them, and those that nearly touch.
     struct FoundPairs {
         std::vector<Pair> touching, parted, near;
         size_t size() const { return touching.size() + parted.size() + near.size(); }

@@ -37,7 +37,7 @@ class SmallestPartSearch {
         return smallest_;
     }
 
-    /// Of what changes from frame to frame, where meshes keep their size.
+    /// The smallest part of what changes from frame to frame, where meshes keep their size.
     SmallestPart run_between_keys() {
         add_radii();
         add_distances();
