@@ -3,7 +3,7 @@
 # folder for the renderer alone and leaves others as they are. And which packages of a list cmake/install-packages wants.
 # usage: check_configure.sh ROOT
 set -euo pipefail
-unset MAKEFLAGS MAKELEVEL MFLAGS MAKEOVERRIDES GNUMAKEFLAGS CUDA PRESET  # those of the `make test` that runs this
+unset MAKEFLAGS MAKELEVEL MFLAGS MAKEOVERRIDES GNUMAKEFLAGS CUDA PRESET CMAKE_ARGS  # those of the `make test` that runs this
 root=$(cd "${1:?usage: check_configure.sh ROOT}" && pwd)
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT

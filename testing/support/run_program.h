@@ -23,6 +23,13 @@ struct ProgramResult {
     std::string out, error;
 };
 
+/// Whether programs are built with the address sanitizer, which needs more memory for itself than limits leave.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool needs_all_memory = true;
+#else
+inline constexpr bool needs_all_memory = false;
+#endif
+
 /// A running program with a working directory and files for its three streams.
 class RunningProgram {
   public:

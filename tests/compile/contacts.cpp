@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <random>
 #include <set>
 
 #include "scene/compile/solids/placed_bodies.h"
 #include "scene/compile/solids/smallest_part.h"
 #include "scene/description/rotation.h"
+#include "scene/readers/read_scene.h"
 #include "testing/support/scene.h"
 #include "testing/support/scene_samples.h"
 
@@ -340,6 +342,234 @@ TEST(Contacts, AGapThatFloatWouldCloseTakesDouble) {
     const SmallestPart part = smallest_part(source);
     EXPECT_LT(part.share, least_share(Precision::single_));
     EXPECT_EQ(part.what, "/objects/1: o1: its distance from /objects/0");
+}
+
+/// Two bodies whose faces lie at no distance or up to a hundredth apart, then a third one that comes near neither.
+class ThreeBodies {
+  public:
+    explicit ThreeBodies(uint64_t seed) : random_(seed) {
+        const int digits[] = {7, 9, as_float, exact, exact};
+        turned_ = pick(3) != 0;
+        bodies_ = Bodies(turned_ ? seed : 0, pick(2) * between_powers(-2, 2), digits[pick(5)]);
+        if (!turned_) bodies_.rotation = Rotation(dvec3(0));
+        gap_ = pick(4) == 0 ? 0 : between_powers(-9, -2);
+        add_below(pick(5));
+        add_above(pick(3));
+    }
+
+    /// Adds a body of any size, as far as that and the others' sizes and more.
+    void add_third() {
+        const double size = between_powers(-3, 3);
+        const dvec3 way = bodies_.rotation(normalized(dvec3(between(-0.7, 0.7), between(-0.7, 0.7), 1)));
+        const dvec3 center = bodies_.move + way * (2 * (size + size_) + between_powers(-2, 11.5));
+        if (pick(2) == 0) {
+            test::add_object(bodies_.scene, SphereObject{center, size}, 0);
+        } else {
+            test::add_solid(bodies_.scene, PlatonicSolid::cube, center, size, dvec3(between(0, 90), between(0, 90), 0));
+        }
+    }
+    const SceneDescription& scene() const { return bodies_.scene; }
+
+  private:
+    int pick(int count) { return int(random_() % uint64_t(count)); }
+    double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+    double between_powers(double low, double high) { return std::pow(10, between(low, high)); }
+
+    void add_below(int kind) {
+        const double half = between_powers(-1, 1);
+        size_ += half;
+        const dvec3 normal = bodies_.rotation(dvec3(0, 0, 1));
+        if (kind == 0) bodies_.floor(half);
+        if (kind == 1) bodies_.box({-half, -half, -0.7 * half}, {half, half, 0});
+        if (kind == 2) test::add_object(bodies_.scene, DiskObject{bodies_.placed(dvec3(0)), normal, half}, 0);
+        if (kind == 3)
+            test::add_object(bodies_.scene, DiskObject::plane(normal, dot(normal, bodies_.placed(dvec3(0)))), 0);
+        if (kind == 4) add_cube(-half, half);
+    }
+    void add_above(int kind) {
+        const double half = between_powers(-1, 1);
+        size_ += half;
+        if (kind == 0) bodies_.box({-half, -0.6 * half, gap_}, {half, half, gap_ + 0.3 * half});
+        if (kind == 1) bodies_.quad({-half, -0.6 * half, gap_}, {1.7 * half, 0, 0}, {0, 2 * half, 0});
+        if (kind == 2) add_cube(gap_ + half, half);
+    }
+    /// A described cube with its middle at (0, 0, z), as turned as the others are about the vertical axis alone.
+    void add_cube(double z, double half) {
+        const dvec3 rotation = turned_ ? dvec3(0) : dvec3(0, 0, between(0, 90));
+        test::add_solid(bodies_.scene, PlatonicSolid::cube, bodies_.placed({0, 0, z}), half * std::sqrt(3.0), rotation);
+    }
+
+    std::mt19937_64 random_;
+    Bodies bodies_;
+    bool turned_ = false;
+    double gap_ = 0, size_ = 0;
+};
+
+/// The parts of two solids on planes that both have, as numbers.
+std::set<std::pair<uint32_t, uint32_t>> parts_in_contact(const Contacts& contacts) {
+    std::set<std::pair<uint32_t, uint32_t>> parts;
+    for (const PartOnPlane& x : contacts.solids[0].parts)
+        for (const PartOnPlane& y : contacts.solids[1].parts)
+            if (x.plane == y.plane) parts.insert({x.part, y.part});
+    return parts;
+}
+
+TEST(Contacts, WhatComesNearNeitherOfTwoBodiesChangesNoContactOfTheirs) {
+    size_t touching = 0, apart = 0, refused = 0;
+    for (uint64_t seed = 0; seed < 4000; ++seed) {
+        ThreeBodies bodies(seed);
+        const SceneSource two = gather_scene(bodies.scene());
+        const auto parts = parts_in_contact(two.bodies->contacts);
+        ++(parts.empty() ? apart : touching);
+        bodies.add_third();
+        try {
+            const SceneSource three = gather_scene(bodies.scene());
+            ASSERT_EQ(parts_in_contact(three.bodies->contacts), parts) << seed;
+        } catch (const Error& error) {
+            ++refused;
+            const std::string what = error.what();
+            ASSERT_TRUE(what.find("/objects/1: o1 is ") != std::string::npos &&
+                        what.find("/objects/0: ") != std::string::npos &&
+                        what.find("double precision does not hold that gap") != std::string::npos)
+                << seed << ": " << what;
+            const auto number_after = [&](const char* text) {
+                return std::atof(what.c_str() + what.find(text) + std::strlen(text));
+            };
+            ASSERT_LE(number_after(": o1 is "), 0x1p-47 * number_after(" that reaches ")) << seed << ": " << what;
+        }
+    }
+    EXPECT_GT(touching, 1000u);
+    EXPECT_GT(apart, 1000u);
+    EXPECT_GT(refused, 10u);
+}
+
+TEST(Contacts, ABodyThatFliesOffLaterChangesNone) {
+    const auto film = [](const std::string& moon) {
+        return read_scene_text(R"({"materials": {"m": {}}, "lights": [{"position": [0, 0, 9]}], "objects": [
+            {"solid": "box", "size": [2, 1, 1], "center": [0, 0, 0], "material": "m"},
+            {"solid": "box", "size": [2, 1, 1], "center": [0, 1.0004, 0], "material": "m"},
+            {"solid": "sphere", "radius": 1, "material": "m", "center": )" +
+                                   moon + "}]}",
+                               "film.json", "");
+    };
+    const SceneSource source = gather_scene(film(R"({"keys": [[0, [9, 0, 0]], [9, [9000, 0, 0]]]})"));
+    EXPECT_TRUE(source.bodies->contacts.planes.empty());
+    EXPECT_EQ(smallest_part(source).what.rfind("/objects/1: its distance from /objects/0", 0), 0u)
+        << smallest_part(source).what;
+    try {
+        gather_scene(film(R"({"keys": [[0, [9, 0, 0]], [9, [1e12, 0, 0]]]})"));
+        ADD_FAILURE() << "refused: double holds no gap of 4e-4 so far out";
+    } catch (const Error& error) {
+        EXPECT_EQ(
+            std::string(error.what()),
+            "frame 0: film.json: /objects/1: object1 is 0.0004 from /objects/0: object0, and double precision does "
+            "not hold that gap in a scene that reaches 5e+11 far; bring what is far away nearer, or close the gap");
+    }
+}
+
+/// A lies on C's face from above, B from below it, and what parts A from B is more than their own tolerance.
+TEST(Contacts, AThirdBodyJoinsNoTwoThatLieOverOneAnotherApart) {
+    Bodies bodies;
+    bodies.quad({-100, -100, 0}, {200, 0, 0}, {0, 200, 0});
+    bodies.box({-1, -1, 4e-5}, {1, 1, 1});
+    bodies.box({-1, -1, -1}, {1, 1, -3e-5});
+    EXPECT_EQ(touching(gathered(bodies).bodies->contacts), (std::set<std::pair<uint32_t, uint32_t>>{{0, 2}}));
+    Bodies beside;
+    beside.quad({-100, -100, 0}, {200, 0, 0}, {0, 200, 0});
+    beside.box({-1, -1, 4e-5}, {1, 1, 1});
+    beside.box({2, -1, -1}, {4, 1, -3e-5});
+    EXPECT_EQ(touching(gathered(beside).bodies->contacts),
+              (std::set<std::pair<uint32_t, uint32_t>>{{0, 1}, {0, 2}, {1, 2}}));
+}
+
+/// A large body that touches A alone carries A neither onto B nor past it.
+TEST(Contacts, NoFaceIsMovedOntoOrPastAnother) {
+    for (const double step : {2e-5, 3e-5}) {
+        Bodies bodies;
+        bodies.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        bodies.quad({0.2, 0.2, 2e-5}, {0.5, 0, 0}, {0, 0.5, 0});
+        bodies.box({1, -500, step}, {1001, 500, 1000});
+        EXPECT_TRUE(touching(gathered(bodies).bodies->contacts).empty()) << step;
+    }
+}
+
+/// A turned body's box along the axes reaches over others that are far from it.
+TEST(Contacts, FacesOfOnePlaneThatLieApartDoNotTouch) {
+    const auto solids = [](const std::string& third) {
+        return gather_scene(
+            read_scene_text(R"({"materials": {"m": {}}, "lights": [{"position": [0, 0, 9]}], "objects": [
+            {"solid": "box", "size": [1, 1, 1], "center": [0, 0, -0.5], "material": "m"},
+            {"solid": "box", "size": [1, 1, 2e-4], "center": [0, 0, 1.0025e-4], "material": "m"})" +
+                                third + "]}",
+                            "apart.json", ""));
+    };
+    const std::string slab = R"(, {"solid": "box", "size": [1000, 1000, 1000], "rotate": [0, 0, 45], "material": "m",
+                                   "center": [512, 512, -499.9999976]})";
+    const auto two = parts_in_contact(solids("").bodies->contacts);
+    EXPECT_FALSE(two.empty());
+    EXPECT_EQ(parts_in_contact(solids(slab).bodies->contacts), two);
+}
+
+/// The distance of a box on a card from the card's other side is the card's thickness, and no gap.
+TEST(Contacts, AThicknessIsNoGap) {
+    const SceneSource source = gather_scene(read_scene_text(
+        R"({"materials": {"m": {}}, "lights": [{"position": [0, 0, 9]}], "objects": [
+            {"solid": "box", "size": [4, 4, 0.001], "center": [0, 0, -0.0005], "material": "m"},
+            {"solid": "box", "size": [1, 1, 1], "center": [0, 0, 0.5], "material": "m"},
+            {"solid": "sphere", "radius": 1e12, "center": [0, 0, 0], "material": "m"}]})",
+        "card.json", ""));
+    EXPECT_EQ(touching(source.bodies->contacts), (std::set<std::pair<uint32_t, uint32_t>>{{0, 1}}));
+}
+
+TEST(Contacts, DisksAndBallsThatDoubleMakesPointsOfAreRefused) {
+    for (const char* small : {R"("disk": {"center": [0, 0, 0], "normal": [0, 0, 1], "radius": 1})",
+                              R"("solid": "sphere", "radius": 1, "center": [0, 0, 0])"})
+        try {
+            gather_scene(read_scene_text(std::string(R"({"materials": {"m": {}}, "objects": [{"material": "m", )") +
+                                             small +
+                                             R"(}, {"solid": "box", "size": [1e17, 1e17, 1e17], "center": [1e17, 0, 0],
+                                                   "material": "m"}]})",
+                                         "far.json", ""));
+            ADD_FAILURE() << small;
+        } catch (const Error& error) {
+            EXPECT_EQ(std::string(error.what()).rfind("far.json: /objects/0: so small beside the scene", 0), 0u)
+                << error.what();
+        }
+}
+
+/// At its keys a box is far from another, over which it passes between them.
+TEST(Contacts, TheSmallestGapBetweenTwoKeysTakesDouble) {
+    const auto part = [](const std::string& height) {
+        return smallest_part(gather_scene(read_scene_text(
+            R"({"materials": {"m": {}}, "lights": [{"position": [0, 0, 9]}], "objects": [
+            {"solid": "box", "size": [2, 2, 1], "center": [0, 0, -0.5], "material": "m"},
+            {"solid": "box", "size": [1, 1, 1], "material": "m", "center": {"keys": [[0, [-7, 0, )" +
+                height + "]], [10, [7, 0, " + height + "]]]}}]}",
+            "film.json", "")));
+    };
+    EXPECT_GT(part("0.6").share, least_share(Precision::single_));
+    EXPECT_EQ(part("0.6").what, "/objects/1: its inradius at frame 0");
+    EXPECT_LT(part("0.500005").share, least_share(Precision::single_));
+    EXPECT_EQ(part("0.500005").what, "/objects/1: its distance from /objects/0 at frame 4");
+}
+
+TEST(Contacts, DescribedBoxesOfSevenDigitsTouch) {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> place(10, 20), side(0.1, 1);
+    for (int i = 0; i < 200; ++i) {
+        const double z = place(random), low = side(random), high = side(random);
+        const auto ends_in_zeros = [](double x) { return std::remainder(std::round(x * 1e5), 100) == 0; };
+        if (ends_in_zeros(z - low / 2) || ends_in_zeros(z + high / 2)) continue;  // 5 digits say nothing of 7
+        const auto box = [&](double center, double size) {
+            return R"({"solid": "box", "material": "m", "size": [1, 1, )" + std::to_string(written(size, 7)) +
+                   R"(], "center": [3, 4, )" + std::to_string(written(center, 7)) + "]}";
+        };
+        const SceneDescription scene =
+            read_scene_text(R"({"materials": {"m": {}}, "lights": [{"position": [0, 0, 30]}], "objects": [)" +
+                                box(z - low / 2, low) + ", " + box(z + high / 2, high) + "]}",
+                            "boxes.json", "");
+        EXPECT_EQ(gather_scene(scene).bodies->contacts.planes.size(), 5u) << "four sides, and where they touch, " << i;
+    }
 }
 
 template <class Real>

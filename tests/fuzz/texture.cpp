@@ -1,5 +1,6 @@
 // Picture files, read as textures and as they stand by the module for OpenImageIO. Programs use it in a process of its
-// own, where a crash of a library is an error like any other, so that none is a finding here either.
+// own, where a crash of a library is an error like any other, so that none is a finding here either, nor what a library
+// leaks of a broken file.
 #include <dlfcn.h>
 #include <setjmp.h>
 #include <ucontext.h>
@@ -11,6 +12,9 @@
 #include "image/reader/texture_limits.h"
 #include "testing/support/scratch_directory.h"
 
+extern "C" void __lsan_disable() __attribute__((weak));  // of the sanitizer, where there is one
+extern "C" void __lsan_enable() __attribute__((weak));
+
 namespace cistula {
 namespace {
 
@@ -19,6 +23,11 @@ constexpr uint64_t limit = 32'000'000;
 sigjmp_buf before_library;
 volatile std::sig_atomic_t is_in_library = 0;
 struct sigaction own_handlers[NSIG];
+
+void enter_library(bool now) {
+    if (const auto leaks = now ? __lsan_disable : __lsan_enable) leaks();
+    is_in_library = now ? 1 : 0;
+}
 
 /// Leaves a library that has crashed. Faults of the module's own code, and all outside of it, are left to the fuzzer.
 void leave_library(int number, siginfo_t*, void* context) {
@@ -120,13 +129,10 @@ void read(const OiioModule& oiio, const std::string& path, bool is_texture) {
             fuzz::require(*reason != 0);
             static_cast<Taken*>(self)->has_failed = true;
         }};
-    if (sigsetjmp(before_library, 1) != 0) {
-        is_in_library = 0;
-        return;
-    }
-    is_in_library = 1;
+    enter_library(true);
+    if (sigsetjmp(before_library, 1) != 0) return enter_library(false);
     const bool done = oiio.read(path.c_str(), &host);
-    is_in_library = 0;
+    enter_library(false);
     fuzz::require(done ? taken.texels == 0 && !taken.has_failed : taken.has_failed || taken.has_refused);
 }
 

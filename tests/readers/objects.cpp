@@ -102,7 +102,8 @@ TEST(ScenePlanes, ChangeAsAWhole) {
     EXPECT_NEAR(dot(plane(9).center, plane(9).normal), -2, 1e-15);
     const auto lowest = [&](int frame) {
         double z = 0;
-        for (const glm::dvec3& vertex : std::get<SolidObject>(at_frame(scene, frame).objects[1].shape).body->vertices)
+        const SceneDescription there = at_frame(scene, frame);
+        for (const glm::dvec3& vertex : std::get<SolidObject>(there.objects[1].shape).body->vertices)
             z = std::min(z, vertex.z);
         return z;
     };

@@ -155,40 +155,50 @@ void write_zipped(Imf::OStream& stream, std::vector<Imf::Header> headers,
     uint64_t offset = table + offsets.size();
     offsets.clear();
 
-    struct Place {
+    struct Chunk {
         size_t part = 0;
-        int chunk = 0;
+        int number = 0;
+        std::vector<char> bytes;
     };
-    Place next;
-    const auto take = [&](tbb::flow_control& control) {
-        if (next.chunk == parts[next.part].chunks) next = {next.part + 1, 0};
-        if (next.part == parts.size()) control.stop();
-        return next.part == parts.size() ? next : Place{next.part, next.chunk++};
+    // Those under way, in a ring: a pipeline that ends by an exception leaves what it passes on, so that it is
+    // pointers.
+    std::vector<Chunk> chunks(2 * static_cast<size_t>(tbb::this_task_arena::max_concurrency()));
+    size_t taken = 0, part_taken = 0;
+    int number = 0;
+    const auto take = [&](tbb::flow_control& control) -> Chunk* {
+        if (number == parts[part_taken].chunks) ++part_taken, number = 0;
+        if (part_taken == parts.size()) {
+            control.stop();
+            return nullptr;
+        }
+        Chunk& chunk = chunks[taken++ % chunks.size()];
+        chunk.part = part_taken;
+        chunk.number = number++;
+        return &chunk;
     };
     tbb::enumerable_thread_specific<ChunkPacker> packers;
-    const auto pack = [&](Place place) {
+    const auto pack = [&](Chunk* chunk) {
         const DefaultRounding rounding;  // of floats that are made here
-        const PartLines& part = parts[place.part];
-        const int first = place.chunk * part.lines;
+        const PartLines& part = parts[chunk->part];
+        const int first = chunk->number * part.lines;
         const std::string_view packed = packers.local().pack(part, first);
-        std::vector<char> bytes;
+        std::vector<char>& bytes = chunk->bytes;
+        bytes.clear();
         bytes.reserve(3 * sizeof(int32_t) + packed.size());
-        if (parts.size() > 1) append(bytes, static_cast<int32_t>(place.part));
-        append(bytes, static_cast<int32_t>(headers[place.part].dataWindow().min.y + first));
+        if (parts.size() > 1) append(bytes, static_cast<int32_t>(chunk->part));
+        append(bytes, static_cast<int32_t>(headers[chunk->part].dataWindow().min.y + first));
         append(bytes, static_cast<int32_t>(packed.size()));
         bytes.insert(bytes.end(), packed.begin(), packed.end());
-        return bytes;
+        return chunk;
     };
-    const auto put = [&](const std::vector<char>& bytes) {
+    const auto put = [&](const Chunk* chunk) {
         append(offsets, offset);
-        offset += bytes.size();
-        write(stream, bytes);
+        offset += chunk->bytes.size();
+        write(stream, chunk->bytes);
     };
-    using Bytes = std::vector<char>;
-    tbb::parallel_pipeline(2 * static_cast<size_t>(tbb::this_task_arena::max_concurrency()),
-                           tbb::make_filter<void, Place>(tbb::filter_mode::serial_in_order, take) &
-                               tbb::make_filter<Place, Bytes>(tbb::filter_mode::parallel, pack) &
-                               tbb::make_filter<Bytes, void>(tbb::filter_mode::serial_in_order, put));
+    tbb::parallel_pipeline(chunks.size(), tbb::make_filter<void, Chunk*>(tbb::filter_mode::serial_in_order, take) &
+                                              tbb::make_filter<Chunk*, Chunk*>(tbb::filter_mode::parallel, pack) &
+                                              tbb::make_filter<Chunk*, void>(tbb::filter_mode::serial_in_order, put));
     stream.seekp(table);
     write(stream, offsets);
 }

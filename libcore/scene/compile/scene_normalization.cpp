@@ -51,6 +51,13 @@ Box box_of_planes(const SceneSource& source) {
     return box;
 }
 
+/// How far a described solid, a ball or a disk reaches from its center; of meshes and planes without end infinite.
+double reach_of(const SourceSolid& solid) {
+    if (solid.polyhedron) return solid.polyhedron->radius * polyhedron_of(*solid.polyhedron).reach;
+    if (solid.sphere) return solid.sphere->radius;
+    return solid.disk ? solid.disk->radius : INFINITY;
+}
+
 double largest_coordinate(const Box& box, const glm::dvec3& center) {
     double largest = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -70,20 +77,24 @@ std::vector<glm::dvec3> world_vertices(const SolidObject& solid) {
     return vertices;
 }
 
+Box world_box(const SourceSolid& solid) {
+    Box box;
+    if (solid.polyhedron) {
+        add_solid(box, *solid.polyhedron);
+    } else if (solid.sphere) {
+        add_sphere(box, solid.sphere->center, solid.sphere->radius);
+    } else if (solid.disk) {
+        if (!solid.disk->is_endless()) add_disk(box, *solid.disk);
+    } else {
+        for (const glm::dvec3& p : solid.mesh.vertices)
+            if (is_finite(p)) box.add(p);
+    }
+    return box;
+}
+
 Box world_box(const SceneSource& source) {
     Box box;
-    for (const SourceSolid& solid : source.solids) {
-        if (solid.polyhedron) {
-            add_solid(box, *solid.polyhedron);
-        } else if (solid.sphere) {
-            add_sphere(box, solid.sphere->center, solid.sphere->radius);
-        } else if (solid.disk) {
-            if (!solid.disk->is_endless()) add_disk(box, *solid.disk);
-        } else {
-            for (const glm::dvec3& p : solid.mesh.vertices)
-                if (is_finite(p)) box.add(p);
-        }
-    }
+    for (const SourceSolid& solid : source.solids) box.add(world_box(solid));
     for (const LightDescription& light : source.description->lights)
         if (light.shown()) add_sphere(box, light.position, light.radius);
     return box;
@@ -92,7 +103,7 @@ Box world_box(const SceneSource& source) {
 SceneNormalization find_normalization(const SceneSource& source) {
     const SceneDescription& description = *source.description;
     Box box = world_box(source);
-    if (source.moving) box.add(source.moving->box);
+    if (source.moving) box.add(source.moving->parts.box);
     if (box.empty() && !source.moving) box = box_of_planes(source);
     SceneNormalization normalization;
     if (description.frame) {
@@ -107,7 +118,7 @@ SceneNormalization find_normalization(const SceneSource& source) {
     if (!is_finite(largest) || (largest > 0 && (largest < 0x1p-900 || largest > 0x1p900)))
         throw scene_error(description, "", "the scene's size is outside what doubles can hold (2^-900 to 2^900)");
     for (const SourceSolid& solid : source.solids)
-        if (solid.polyhedron && solid.polyhedron->radius * polyhedron_of(*solid.polyhedron).reach < 0x1p-50 * largest)
+        if (reach_of(solid) < 0x1p-50 * largest)
             throw scene_error(description, solid.place,
                               "so small beside the scene that double precision makes a point of it",
                               "give it a larger radius, or bring what is far away nearer");

@@ -11,6 +11,7 @@
 namespace cistula {
 
 struct SceneSource;
+struct SourceSolid;
 
 struct SceneNormalization {
     glm::dvec3 center{0};
@@ -21,7 +22,9 @@ struct SceneNormalization {
     glm::dvec3 point(const glm::dvec3& world) const { return (world - center) * factor; }
 };
 
-/// A box around a scene's solids and visible lights, in scene units.
+/// A box around a solid and its visible edge lights, in scene units; of a plane without end empty.
+Box world_box(const SourceSolid& solid);
+/// A box around a scene's solids and visible lights.
 Box world_box(const SceneSource& source);
 
 /// The frame of a scene, for all frames of a film. M lies in [1, 2), unless the description gives the frame; then M

@@ -335,59 +335,6 @@ SceneSource gathered_parts(const SceneDescription& description, SceneAssets asse
     return source;
 }
 
-/// A sphere around a mesh file's vertices, in its own coordinates.
-struct MeshBall {
-    dvec3 center{0};
-    double radius = 0;
-
-    explicit MeshBall(const MeshData& data) {
-        Box box;
-        for (const PolygonMesh& group : data.groups)
-            for (const dvec3& p : group.vertices)
-                if (is_finite(p)) box.add(p);
-        if (box.empty()) return;
-        center = 0.5 * box.low + 0.5 * box.high;
-        for (const PolygonMesh& group : data.groups)
-            for (const dvec3& p : group.vertices)
-                if (is_finite(p)) radius = max_or_second(length(p - center), radius);
-        radius *= 1 + 0x1p-40;  // above all rounding of placed vertices
-    }
-
-    void add_to(Box& box, const MeshObject& mesh) const {
-        const dvec3 placed = mesh.center + Rotation(mesh.rotation)(mesh.scale * center);
-        const dvec3 reach(mesh.scale * radius + 0x1p-40 * length(placed));
-        box.add(placed - reach);
-        box.add(placed + reach);
-    }
-};
-
-/// The box around what changes, in all frames: of meshes around a sphere that turns with them, else of what is there.
-Box box_of_motion(const SceneDescription& description, const SceneAssets& assets, StopSignal stop) {
-    const Motion& motion = *description.motion;
-    std::map<size_t, MeshBall> meshes;
-    for (const size_t i : motion.objects)
-        if (assets.meshes[i]) meshes.emplace(i, *assets.meshes[i]);
-    SceneDescription at = description;
-    SceneDescription part = description;  // what changes, but for meshes
-    const auto parts = [&] { return gathered_parts(part, {}, stop); };
-    Box box;
-    for (int frame = motion.frames.front(); frame <= motion.frames.back(); ++frame) {
-        stop.check();
-        motion.set(at, frame);
-        part.shown = frame;
-        part.objects.clear();
-        part.lights.clear();
-        for (const size_t i : motion.lights) part.lights.push_back(at.lights[i]);
-        for (const size_t i : motion.objects)
-            if (const auto mesh = meshes.find(i); mesh != meshes.end())
-                mesh->second.add_to(box, std::get<MeshObject>(at.objects[i].shape));
-            else
-                part.objects.push_back(at.objects[i]);
-        box.add(world_box(named_by_frame(part, parts)));
-    }
-    return box;
-}
-
 /// The solids of each mesh that does not change, but for those that bring materials.
 std::vector<std::vector<SourceSolid>> still_meshes(const SceneDescription& description, const SceneSource& source) {
     std::vector<std::vector<SourceSolid>> solids(description.objects.size());
@@ -407,9 +354,10 @@ SceneSource gathered_scene(const SceneDescription& description, SceneAssets asse
         return gathered_parts(description, keeps_assets ? assets : std::move(assets), stop, moving.get());
     });
     if (keeps_assets) {
-        const Box box = box_of_motion(description, assets, stop);
+        const auto gather = [&](const SceneDescription& part) { return gathered_parts(part, {}, stop); };
+        MovingParts parts(description, assets, gather, stop);
         moving = std::make_shared<const MovingScene>(
-            MovingScene{description, std::move(assets), box, still_meshes(description, source)});
+            MovingScene{description, std::move(assets), std::move(parts), still_meshes(description, source)});
     }
     source.moving = std::move(moving);
     named_by_frame(description, [&] {

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "scene/assets/assets.h"
 #include "scene/compile/meshes/mesh_edges.h"
+#include "scene/compile/moving_parts.h"
 #include "scene/description/description.h"
 #include "scene/description/mesh_source.h"
 
@@ -52,7 +53,7 @@ std::shared_ptr<MeshCache> new_mesh_cache();
 struct MovingScene {
     SceneDescription description;
     SceneAssets assets;
-    Box box;                                               // around what changes, in all frames, in scene units
+    MovingParts parts;                                     // what changes, in all frames
     std::vector<std::vector<SourceSolid>> solids;          // of each mesh that does not change, for all frames
     std::shared_ptr<MeshCache> meshes = new_mesh_cache();  // what compiling found of them
 };

@@ -52,9 +52,9 @@ int last_bit_of(double number) {
     return exponent - 53 + std::countr_zero(uint64_t(std::abs(std::ldexp(fraction, 53))));
 }
 
-/// Whether a double's last three bits are 0: rounding leaves that to one in eight.
+/// Whether a double's last twelve bits are 0: rounding leaves that to one in 4,096.
 bool ends_early(double number) {
-    return std::bit_cast<uint64_t>(number) % 8 == 0;
+    return std::bit_cast<uint64_t>(number) % 4096 == 0;
 }
 
 class StyleSearch {

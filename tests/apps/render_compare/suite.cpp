@@ -363,6 +363,7 @@ TEST_F(SuiteProgram, ThePageShowsWhatDiffersAndWhy) {
 
 /// What a header claims decides neither memory nor time.
 TEST_F(SuiteProgram, ForgedGoldenImagesCostNothing) {
+    if (needs_all_memory) GTEST_SKIP() << "the sanitizer needs memory for itself";
     put_bytes(file("s/box.json"), R"({"film": {"width": 8, "height": 6}, "depth": 3, "cutoff": 0.01,
         "ambient": 1, "background": 1,
         "materials": {"m": {"reflection": 0.5, "transmission": 0.5, "diffuse": 0}},
@@ -500,6 +501,7 @@ TEST_F(SuiteProgram, PicturesOfOtherProgramsAreCases) {
 }
 
 TEST_F(SuiteProgram, ManyJobsWithLittleMemoryAreALineEach) {
+    if (needs_all_memory) GTEST_SKIP() << "the sanitizer needs memory for itself";
     cases({R"("name": "a")", R"("name": "b")", R"("name": "c")"});
     expect(0, {"--update"});
     const ProgramResult result =

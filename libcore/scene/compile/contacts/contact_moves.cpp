@@ -83,6 +83,9 @@ class BodyMove {
             std::vector<uint32_t> numbers;
             const uint32_t vertex = corners[first].vertex;
             dvec3 place = body_.points[vertex];
+            double most = 0;
+            for (size_t i = first; i < corners.size() && corners[i].vertex == vertex; ++i)
+                most = max_or_second(most_moved * faces_[corners[i].face].tolerance, most);
             for (; first < corners.size() && corners[first].vertex == vertex; ++first) {
                 const uint32_t number = faces_[corners[first].face].plane;
                 if (std::find(numbers.begin(), numbers.end(), number) != numbers.end()) continue;
@@ -90,7 +93,7 @@ class BodyMove {
                 planes.push_back(planes_[number]);
                 numbers.push_back(number);
                 const std::optional<dvec3> nearest = settled(planes, body_.points[vertex]);
-                if (nearest && length(*nearest - body_.points[vertex]) <= most_moved * body_.reach.own) {
+                if (nearest && length(*nearest - body_.points[vertex]) <= most) {
                     place = *nearest;
                     continue;
                 }

@@ -17,7 +17,7 @@ struct PlaneEquation {
     double distance(const glm::dvec3& point) const { return dot(normal, point) - offset; }
 };
 
-/// The most that a vertex is moved, in tolerances of its body.
+/// The most that a vertex is moved, in the largest tolerance of its faces.
 inline constexpr double most_moved = 4;
 
 /// The point nearest to `point` on up to three planes; none if they are too nearly parallel to fix one.
@@ -27,6 +27,7 @@ std::optional<glm::dvec3> nearest_on(std::span<const PlaneEquation> planes, cons
 struct BoundFace {
     const FlatFace* face;
     uint32_t plane;
+    double tolerance;  // with the largest face there; of that the largest with the others
 };
 
 /// Moves a body's vertices into the planes of its faces, each from its place to the nearest point of all its planes,

@@ -33,8 +33,8 @@ struct SolidContacts {
 /// Two solids with faces that nearly touch.
 struct NearPair {
     uint32_t solids[2];
-    double gap;    // the largest distance of the smaller face's corners from the larger one's plane, in the frame
-    bool by_size;  // no "contact" joins them: one of them is too thin
+    double gap;   // the largest distance of the smaller face's corners from the larger one's plane, in the frame
+    bool joined;  // by a longer "contact", which is worth a word
 };
 
 /// The solids of a scene in its frame: which faces touch, and where their vertices then lie.
@@ -43,7 +43,7 @@ struct Contacts {
     std::vector<SolidContacts> solids;
     uint32_t first[2] = {0, 0};   // the two solids with faces in one plane that come first; equal: one sheet
     size_t pairs = 0;             // of faces that touch
-    std::vector<NearPair> near;   // the first one for each two solids; none where the scene gives "contact"
+    std::vector<NearPair> near;   // the nearest faces of each two solids
     std::vector<NearPair> apart;  // two solids with faces that touch but cannot be moved into one plane
     double farthest_move = 0;     // of a vertex, in the frame
     uint32_t moved = 0;           // the solid of that vertex

@@ -5,6 +5,7 @@
 
 #include "cistula/numerics/vec.h"
 #include "scene/compile/meshes/mesh_edges.h"
+#include "scene/description/rotation.h"
 
 namespace cistula {
 namespace {
@@ -18,31 +19,91 @@ int level_of(const Box& box) {
     return -1;
 }
 
-/// The face that some triangles make, whose numbers are kept for it.
-FlatFace face_of(ContactBody& body, std::span<const uint32_t> triangles) {
+FlatFace empty_face(const ContactBody& body, bool as_given) {
     FlatFace face{};
     face.body = &body;
     face.solid = body.solid;
+    face.as_given = as_given;
+    return face;
+}
+
+/// Finds the boxes and the middle of a face that has its corners.
+void place_corners(FlatFace& face) {
+    const std::vector<dvec3>& points = face.points();
+    for (const uint32_t corner : face.corners) {
+        face.box.add(points[corner]);
+        face.in_frame.add(face.body->points[corner]);
+        face.middle += points[corner] / double(face.corners.size());
+    }
+    face.level = level_of(face.box);
+}
+
+/// The plane without end that a face stands for.
+void place_endless(FlatFace& face) {
+    place_corners(face);
+    face.normal = normalized(face.body->place->endless->normal);
+    face.area = INFINITY;
+    face.level = -1;
+    for (int axis = 0; axis < 3; ++axis)
+        if (magnitude(face.normal[axis]) == 1) face.level = axis;
+    face.box = {dvec3(-INFINITY), dvec3(INFINITY)};
+}
+
+/// The plane of a mesh's face that has its triangles and corners.
+void place_triangles(FlatFace& face) {
+    if (face.is_endless()) return place_endless(face);
+    dvec3 area(0);
+    for (const uint32_t t : face.parts) {
+        const auto corner = points_of(face.points(), face.body->facets[t]);
+        area += cross(corner[1] - corner[0], corner[2] - corner[0]);
+    }
+    face.normal = normalized(area);
+    face.area = length(area) / 2;
+    place_corners(face);
+    face.offset = dot(face.normal, face.middle);
+}
+
+/// The face that some triangles make, whose numbers are kept for it.
+FlatFace face_of(ContactBody& body, std::span<const uint32_t> triangles, bool as_given) {
+    FlatFace face = empty_face(body, as_given);
     face.parts = triangles;
     std::vector<uint32_t>& numbers = body.numbers;
     const auto first = ptrdiff_t(numbers.size());
-    dvec3 area(0);
-    for (const uint32_t t : triangles) {
-        const auto corner = points_of(body, t);
-        area += cross(corner[1] - corner[0], corner[2] - corner[0]);
+    for (const uint32_t t : triangles)
         for (const uint32_t vertex : body.facets[t]) numbers.push_back(body.welded[vertex]);
-    }
     std::sort(numbers.begin() + first, numbers.end());
     numbers.erase(std::unique(numbers.begin() + first, numbers.end()), numbers.end());
     face.corners = {numbers.begin() + first, numbers.end()};
-    face.normal = normalized(area);
-    face.area = length(area) / 2;
-    for (const uint32_t corner : face.corners) {
-        face.box.add(body.points[corner]);
-        face.middle += body.points[corner] / double(face.corners.size());
+    place_triangles(face);
+    return face;
+}
+
+FlatFace polyhedron_face(const ContactBody& body, const SolidObject& solid, const Polyhedron::Face& from,
+                         bool as_given) {
+    FlatFace face = empty_face(body, as_given);
+    face.parts = {&from.id, 1};
+    face.corners = from.vertices;
+    place_corners(face);
+    const std::vector<dvec3>& points = face.points();
+    dvec3 area(0);
+    for (size_t i = 2; i < face.corners.size(); ++i) {
+        const dvec3& first = points[face.corners[0]];
+        area += cross(points[face.corners[i - 1]] - first, points[face.corners[i]] - first);
     }
-    face.offset = dot(face.normal, face.middle);
-    face.level = level_of(face.box);
+    face.area = length(area) / 2;
+    const PlanePair& pair = body.planes->planes[from.id / 2];
+    const bool high = from.id % 2 == 1;
+    if (!as_given && body.moved) {
+        face.normal = normalized(area);
+        face.offset = dot(face.normal, face.middle);
+        return face;
+    }
+    face.normal = high ? pair.normal : -pair.normal;
+    face.offset = high ? pair.high : -pair.low;
+    if (as_given) {
+        const Polyhedron::Planes& own = polyhedron_of(solid).planes[from.id / 2];
+        face.offset = body.place->scaled * (high ? own.high : -own.low);
+    }
     return face;
 }
 
@@ -63,7 +124,7 @@ class FaceGrowth {
             areas_.push_back(cross(corner[1] - corner[0], corner[2] - corner[0]));
             corners.push_back({welded(t, 0), welded(t, 1), welded(t, 2)});
         }
-        next_ = link_edges(corners, body.points.size()).next;
+        next_ = link_edges(corners, body.given.size()).next;
     }
 
     std::vector<FlatFace> grow() {
@@ -88,8 +149,8 @@ class FaceGrowth {
             const size_t before = numbers.size();
             for (const uint32_t i : members) numbers.push_back(triangles_[i]);
             std::sort(numbers.begin() + ptrdiff_t(before), numbers.end());
-            faces.push_back(face_of(body_, std::span(numbers).subspan(before)));
-            if (!(farthest_from(faces.back().normal, faces.back().offset, faces.back()) > 2 * tolerance_)) continue;
+            faces.push_back(face_of(body_, std::span(numbers).subspan(before), true));
+            if (!(farthest_from(faces.back(), faces.back()) > 2 * tolerance_)) continue;
             faces.pop_back();
             numbers.resize(before);
             for (const uint32_t i : members) faces.push_back(face_of_one(i));
@@ -100,8 +161,10 @@ class FaceGrowth {
   private:
     static constexpr uint32_t most_tried = 16;
 
-    std::array<dvec3, 3> points_of(uint32_t triangle) const { return cistula::points_of(body_, triangle); }
-    FlatFace face_of_one(uint32_t i) { return face_of(body_, {&triangles_[i], 1}); }
+    std::array<dvec3, 3> points_of(uint32_t triangle) const {
+        return cistula::points_of(body_.given, body_.facets[triangle]);
+    }
+    FlatFace face_of_one(uint32_t i) { return face_of(body_, {&triangles_[i], 1}, true); }
     uint32_t welded(uint32_t triangle, size_t corner) const { return body_.welded[body_.facets[triangle][corner]]; }
 
     /// A triangle and all that lie in its plane and hang together with it.
@@ -153,19 +216,66 @@ bool apart(const std::array<dvec3, 3>& a, const std::array<dvec3, 3>& b, double 
 
 }  // namespace
 
-ContactRange::ContactRange(const SceneSource& source, const SceneNormalization& normalization) {
-    const double tau = 0x1p-20 * normalization.extent;
-    touching = tau;
-    const std::optional<double>& contact = source.description->contact;
-    given = contact.has_value();
-    if (given) {
-        const dvec3& center = normalization.center;
-        const double largest = largest_component(dvec3{magnitude(center.x), magnitude(center.y), magnitude(center.z)}) *
-                                   normalization.factor +
-                               normalization.extent;
-        touching = max_or_second(*contact * normalization.factor, 16 * 2 * RealTraits<double>::unit * largest);
+BodyPlace::BodyPlace(const SourceSolid& solid, double factor) {
+    if (solid.sphere) return;
+    const std::span<const TriangleCorners> triangles = solid.mesh.triangles;
+    if (solid.polyhedron) {
+        anchor = solid.polyhedron->center * factor;
+        scaled = solid.polyhedron->radius * factor;
+        span = box_of(vertices(solid, factor));
+    } else if (solid.disk) {
+        anchor = solid.disk->center * factor;
+        if (solid.disk->is_endless()) endless = solid.disk;
+    } else if (!triangles.empty()) {
+        anchor = solid.mesh.vertices[triangles[0][0]] * factor;
     }
-    near = max_or_second(16 * tau, touching);
+    if (!solid.polyhedron && !endless)
+        for (const TriangleCorners& corners : triangles)
+            for (const uint32_t corner : corners) span.add(solid.mesh.vertices[corner] * factor - anchor);
+    for (int axis = 0; axis < 3; ++axis) {
+        largest = max_or_second(magnitude(anchor[axis]), largest);
+        if (span.empty()) continue;
+        for (const double end : {span.low[axis], span.high[axis]})
+            largest = max_or_second(magnitude(anchor[axis] + end), largest);
+    }
+}
+
+std::vector<dvec3> BodyPlace::vertices(const SourceSolid& solid, double factor) const {
+    std::vector<dvec3> all;
+    if (solid.polyhedron) {
+        const Rotation rotation(solid.polyhedron->rotation);
+        for (const dvec3& p : polyhedron_of(*solid.polyhedron).vertices) all.push_back(rotation(scaled * p));
+        return all;
+    }
+    all.reserve(solid.mesh.vertices.size());
+    for (const dvec3& p : solid.mesh.vertices) all.push_back(endless ? dvec3(0) : p * factor - anchor);
+    return all;
+}
+
+double BodyPlace::half_side() const {
+    return span.empty() ? 0 : largest_component(span.high - span.low) / 2;
+}
+
+ContactRange::ContactRange(const SceneSource& source, double factor) : contact_(source.description->contact) {
+    if (contact_) *contact_ *= factor;
+}
+
+double ContactRange::tau(const BodyPlace& a, const BodyPlace& b) const {
+    if (a.endless && b.endless) return ulps(a, b);
+    if (a.endless || b.endless) return share * (a.endless ? b : a).half_side();
+    const dvec3 way = b.anchor - a.anchor;
+    BodyPlace both = a;
+    both.span.add({b.span.low + way, b.span.high + way});
+    return share * both.half_side();
+}
+
+double ContactRange::tolerance(const BodyPlace& a, const BodyPlace& b, double rounding, double most) const {
+    const double touching = contact_ ? max_or_second(*contact_, ulps(a, b)) : max_or_second(tau(a, b), rounding);
+    return min_or_second(touching, most);
+}
+
+double ContactRange::ulps(const BodyPlace& a, const BodyPlace& b) {
+    return 16 * 2 * RealTraits<double>::unit * max_or_second(a.largest, b.largest);
 }
 
 double rounding_along(const dvec3& normal, const dvec3& half_unit) {
@@ -176,7 +286,7 @@ double rounding_along(const dvec3& normal, const dvec3& half_unit) {
 
 bool touch(const Box& a, const Box& b, double pad) {
     for (int axis = 0; axis < 3; ++axis)
-        if (a.low[axis] - pad > b.high[axis] + pad || b.low[axis] - pad > a.high[axis] + pad) return false;
+        if (a.low[axis] > b.high[axis] + pad || b.low[axis] - pad > a.high[axis]) return false;
     return true;
 }
 
@@ -184,26 +294,20 @@ Box padded(const Box& box, double pad) {
     return {box.low - dvec3(pad), box.high + dvec3(pad)};
 }
 
-NearSolids::NearSolids(std::vector<Box> boxes, double pad) : boxes_(std::move(boxes)), pad_(pad) {
+NearSolids::NearSolids(std::vector<Box> boxes, std::vector<double> pads)
+    : boxes_(std::move(boxes)), pads_(std::move(pads)) {
     std::vector<RTCBuildPrimitive> primitives;
     for (uint32_t i = 0; i < boxes_.size(); ++i)
-        if (!boxes_[i].empty()) primitives.push_back(padded_primitive(boxes_[i], pad_, i));
+        if (!boxes_[i].empty()) primitives.push_back(padded_primitive(boxes_[i], pads_[i], i));
     tree_ = build_tree(primitives, 0);
-}
-
-bool NearSolids::meets_another(const Box& box, uint32_t solid) const {
-    return !box.empty() && any_in_box(tree_, padded(box, pad_), [&](uint32_t other) {
-        return other != solid && touch(box, boxes_[other], pad_);
-    });
 }
 
 std::vector<FlatFace> joined_faces(ContactBody& body) {
     return FaceGrowth(body).grow();
 }
 
-std::array<dvec3, 3> points_of(const ContactBody& body, uint32_t facet) {
-    const TriangleCorners& c = body.facets[facet];
-    return {body.points[c[0]], body.points[c[1]], body.points[c[2]]};
+std::array<dvec3, 3> points_of(std::span<const dvec3> points, const TriangleCorners& corners) {
+    return {points[corners[0]], points[corners[1]], points[corners[2]]};
 }
 
 std::vector<FlatFace> single_faces(ContactBody& body) {
@@ -211,40 +315,47 @@ std::vector<FlatFace> single_faces(ContactBody& body) {
     std::vector<FlatFace> faces;
     faces.reserve(body.near.size());
     for (const uint32_t& t : body.near)
-        if (const FlatFace face = face_of(body, {&t, 1}); face.area > 0) faces.push_back(face);
+        if (const FlatFace face = face_of(body, {&t, 1}, false); face.area > 0) faces.push_back(face);
     return faces;
 }
 
-std::vector<FlatFace> polyhedron_faces(const ContactBody& body, const SolidObject& solid) {
+std::vector<FlatFace> polyhedron_faces(const ContactBody& body, const SolidObject& solid, bool as_given) {
     std::vector<FlatFace> faces;
-    for (const Polyhedron::Face& from : polyhedron_of(solid).faces) {
-        FlatFace face{};
-        face.body = &body;
-        face.solid = body.solid;
-        face.parts = {&from.id, 1};
-        face.corners = from.vertices;
-        dvec3 area(0);
-        for (size_t i = 0; i < face.corners.size(); ++i) {
-            const dvec3 &first = body.points[face.corners[0]], &p = body.points[face.corners[i]];
-            face.box.add(p);
-            face.middle += p / double(face.corners.size());
-            if (i >= 2) area += cross(body.points[face.corners[i - 1]] - first, p - first);
-        }
-        face.area = length(area) / 2;
-        face.level = level_of(face.box);
-        const PlanePair& pair = body.planes->planes[from.id / 2];
-        const bool high = from.id % 2 == 1;
-        face.normal = body.moved ? normalized(area) : high ? pair.normal : -pair.normal;
-        face.offset = body.moved ? dot(face.normal, face.middle) : high ? pair.high : -pair.low;
-        faces.push_back(face);
-    }
+    for (const Polyhedron::Face& from : polyhedron_of(solid).faces)
+        faces.push_back(polyhedron_face(body, solid, from, as_given));
     return faces;
 }
 
-double farthest_from(const dvec3& normal, double offset, const FlatFace& face) {
+std::vector<FlatFace> endless_faces(ContactBody& body) {
+    make_room(body);
+    return {face_of(body, body.near, true)};
+}
+
+FlatFace seen(const FlatFace& face, bool as_given, const SourceSolid& solid) {
+    if (face.as_given == as_given) return face;
+    FlatFace there = empty_face(*face.body, as_given);
+    there.number = face.number;
+    there.parts = face.parts;
+    there.corners = face.corners;
+    if (!solid.polyhedron) {
+        place_triangles(there);
+        return there;
+    }
+    const std::vector<Polyhedron::Face>& faces = polyhedron_of(*solid.polyhedron).faces;
+    const auto is_this = [&](const Polyhedron::Face& other) { return other.id == face.parts[0]; };
+    return polyhedron_face(*face.body, *solid.polyhedron, *std::find_if(faces.begin(), faces.end(), is_this), as_given);
+}
+
+double signed_distance(const FlatFace& plane, const FlatFace& of, const dvec3& point) {
+    return dot(plane.normal, point + way_between(plane, of)) - plane.offset;
+}
+
+double farthest_from(const FlatFace& plane, const FlatFace& face) {
+    const dvec3 way = way_between(plane, face);
+    const std::vector<dvec3>& points = face.points();
     double farthest = 0;
     for (const uint32_t corner : face.corners)
-        farthest = max_or_second(magnitude(dot(normal, face.body->points[corner]) - offset), farthest);
+        farthest = max_or_second(magnitude(dot(plane.normal, points[corner] + way) - plane.offset), farthest);
     return farthest;
 }
 

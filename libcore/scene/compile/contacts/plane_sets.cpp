@@ -1,5 +1,7 @@
 #include "scene/compile/contacts/plane_sets.h"
 
+#include <algorithm>
+
 #include "cistula/numerics/vec.h"
 
 namespace cistula {
@@ -13,7 +15,11 @@ bool PlaneSets::join(uint32_t a, uint32_t b) {
     const FlatFace& plane = faces_[kept.largest];
     for (const uint32_t i : added.members) {
         const FlatFace& face = faces_[i];
-        if (farthest_from(plane.normal, plane.offset, face) > test_.tolerance(plane, face)) return false;
+        if (!test_.lies_in(plane, face)) return false;
+        const auto apart = apart_.find(i);
+        if (apart != apart_.end())
+            for (const uint32_t other : apart->second)
+                if (root(other) == stays || !stays_apart(face, plane, other)) return false;
         const auto known = kept.along.find(face.solid);
         if (known != kept.along.end() && known->second != (dot(face.normal, plane.normal) > 0)) return false;
     }
@@ -27,6 +33,19 @@ bool PlaneSets::join(uint32_t a, uint32_t b) {
     roots_.merge(stays, goes);
     sets_[root(stays)] = std::move(joined);
     return true;
+}
+
+bool PlaneSets::stays_apart(const FlatFace& face, const FlatFace& plane, uint32_t other) {
+    const FlatFace &over = faces_[other], &its_plane = faces_[set(root(other)).largest];
+    const double side = signed_distance(face, over, over.middle) > 0 ? 1 : -1;
+    const double turned = dot(face.normal, plane.normal) > 0 ? side : -side;
+    const double slope = dot(plane.normal, its_plane.normal);
+    const bool first = FaceTest::is_larger(face, over);
+    const double least = test_.tolerance(first ? face : over, first ? over : face);
+    return std::any_of(over.corners.begin(), over.corners.end(), [&](uint32_t corner) {
+        const glm::dvec3& p = over.points()[corner];
+        return turned * (signed_distance(plane, over, p) - slope * signed_distance(its_plane, over, p)) > least;
+    });
 }
 
 PlaneSets::Set& PlaneSets::set(uint32_t root) {

@@ -16,8 +16,11 @@ class PlaneSets {
 
     uint32_t root(uint32_t i) { return roots_.root(i); }
 
-    /// Makes one set of those of two faces. False if that would take a face beyond its tolerance of the plane, or put
-    /// two opposite faces of a closed body into it.
+    /// Says that two faces lie over one another and do not touch: no set has both.
+    void part(uint32_t a, uint32_t b) { apart_[a].push_back(b), apart_[b].push_back(a); }
+
+    /// Makes one set of those of two faces. False if that would take a face beyond its tolerance of the plane, or onto
+    /// or past one that it is parted from, or put two opposite faces of a closed body into it.
     bool join(uint32_t a, uint32_t b);
 
     struct Set {
@@ -28,10 +31,14 @@ class PlaneSets {
     Set& set(uint32_t root);
 
   private:
+    /// Whether a face that is moved into a plane still lies on its side of one that it is parted from.
+    bool stays_apart(const FlatFace& face, const FlatFace& plane, uint32_t other);
+
     const FaceList& faces_;
     const FaceTest& test_;
     UnionFind roots_;
     std::unordered_map<uint32_t, Set> sets_;  // by root; of faces that are in pairs
+    std::unordered_map<uint32_t, std::vector<uint32_t>> apart_;
 };
 
 }  // namespace cistula

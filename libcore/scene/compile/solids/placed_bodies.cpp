@@ -104,7 +104,7 @@ void PlacedBodies::bind_slab(ConvexSolid& solid, uint32_t slab) const {
 void PlacedBodies::follow(const ConvexSolid& solid, uint32_t face, const dvec3& opposite, PlanePair& pair) const {
     const std::vector<dvec3> corners = solid.face_corners(face);
     if (!corners.empty()) {
-        const double most = min_or_second(0x1p-22 * normalization.extent, contacts.solids[solid.solid].reach.own / 4);
+        const double most = contacts.solids[solid.solid].reach.own / 2;
         dvec3 middle(0);
         for (const dvec3& p : corners) middle += p / double(corners.size());
         const double through = dot(opposite, middle);

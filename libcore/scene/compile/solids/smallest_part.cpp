@@ -1,8 +1,10 @@
 #include "scene/compile/solids/smallest_part.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <exception>
 
 #include "scene/compile/lights/compile_lights.h"
 #include "scene/compile/solids/placed_bodies.h"
@@ -30,10 +32,15 @@ class SmallestPartSearch {
 
     SmallestPart run() {
         add_solids();
-        add_lights();
-        add_gaps();
-        add_coat();
+        add_distances();
         for (uint32_t i = 0; i < source_.solids.size(); ++i) add_walls(i);
+        return smallest_;
+    }
+
+    /// The smallest part of what changes from frame to frame, where meshes keep their size.
+    SmallestPart run_between_keys() {
+        add_radii();
+        add_distances();
         return smallest_;
     }
 
@@ -47,14 +54,21 @@ class SmallestPartSearch {
         return solid.name.empty() ? solid.place : solid.place + ": " + solid.name;
     }
 
+    void add_distances() {
+        add_lights();
+        add_gaps();
+        add_coat();
+    }
+
     void add_solids() {
-        for (uint32_t i = 0; i < source_.solids.size(); ++i) {
-            const SourceSolid& solid = source_.solids[i];
-            if (solid.sphere) continue;
-            if (!solid.polyhedron) {
-                add_mesh(i);
-                continue;
-            }
+        for (uint32_t i = 0; i < source_.solids.size(); ++i)
+            if (source_.solids[i].is_mesh()) add_mesh(i);
+        add_radii();
+    }
+
+    void add_radii() {
+        for (const SourceSolid& solid : source_.solids) {
+            if (!solid.polyhedron) continue;
             const double radius = solid.polyhedron->radius * normalization_.factor;
             add(polyhedron_of(*solid.polyhedron).inradius * radius, [&] { return name(solid) + ": its inradius"; });
         }
@@ -157,15 +171,41 @@ class SmallestPartSearch {
     SmallestPart smallest_;
 };
 
+/// The smallest part at each of some frames, named by them. Throws the error of the first that has one.
+std::vector<SmallestPart> parts_at(const std::vector<int>& frames, const SceneSource& source,
+                                   SmallestPart (SmallestPartSearch::*run)()) {
+    std::vector<SmallestPart> parts(frames.size());
+    std::vector<std::exception_ptr> errors(frames.size());
+    tbb::parallel_for(size_t(0), frames.size(), [&](size_t i) {
+        try {
+            const SceneSource there = gather_frame(source.moving, frames[i], source.stop);
+            parts[i] = (SmallestPartSearch(there).*run)();
+            parts[i].what += fmt::format(" at frame {}", frames[i]);
+        } catch (const Error&) {
+            errors[i] = std::current_exception();
+        }
+    });
+    for (const std::exception_ptr& error : errors)
+        if (error) std::rethrow_exception(error);
+    return parts;
+}
+
 }  // namespace
 
 SmallestPart smallest_part(const SceneSource& source) {
     if (!source.moving) return SmallestPartSearch(source).run();
     SmallestPart smallest;
-    for (const int frame : source.moving->description.motion->frames) {
-        SmallestPart part = SmallestPartSearch(gather_frame(source.moving, frame, source.stop)).run();
-        if (part.share < smallest.share) smallest = {part.share, fmt::format("{} at frame {}", part.what, frame)};
-    }
+    const auto ask = [&](const std::vector<int>& frames, SmallestPart (SmallestPartSearch::*run)()) {
+        for (const SmallestPart& part : parts_at(frames, source, run))
+            if (part.share < smallest.share) smallest = part;
+    };
+    ask(source.moving->description.motion->frames, &SmallestPartSearch::run);
+    if (smallest.share < least_share(Precision::single_)) return smallest;
+    const SceneNormalization& normalization = source.bodies->normalization;
+    const double reach = least_share(Precision::single_) * normalization.extent / normalization.factor;
+    const MovingParts& parts = source.moving->parts;
+    ask(parts.frames_of_smaller(source), &SmallestPartSearch::run);
+    ask(parts.frames_of_meetings(source, reach), &SmallestPartSearch::run_between_keys);
     return smallest;
 }
 

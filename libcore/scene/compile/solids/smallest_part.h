@@ -26,7 +26,8 @@ constexpr double least_share(Precision precision) {
 /// heights of triangles, but those too low for double, and half the thinnest wall, where nothing else takes double;
 /// distances of lights from faces, but those up to 16 u M in float, where they lie on them; radii of visible lights;
 /// gaps that float would close, between solids and between balls. Not other gaps, nor the camera. Of a scene that
-/// changes: the smallest at the frames of its keys, whichever is shown.
+/// changes: the smallest at the frames of its keys and, if float holds these, at those between in which something is
+/// smaller or comes near something, whichever is shown.
 SmallestPart smallest_part(const SceneSource& source);
 
 /// The smallest part of a scene. Opens its meshes. Throws Error as compile_scene does.

@@ -236,6 +236,37 @@ void optical(Stage& stage, Tally& tally) {
         }
 }
 
+// ---- what is far away: it changes neither a contact nor a gap between two others
+
+/// Two cubes of glass that touch or have a gap of 2^-13 between them, under even light; a ball of the background's
+/// color `far` away, which nothing tells from that. `contact`: the scene's, if it is above 0.
+SceneDescription beside(const Ground& ground, bool gap, double far, double contact) {
+    Site site(ground);
+    site.scene.ambient = dvec3(1), site.scene.background = {0.2, 0.5, 0.8};
+    site.scene.cutoff = 1e-4;
+    if (contact > 0) site.scene.contact = contact;
+    const int body = add_material(site.scene, glass(1.5, true, {0.1, 0.3, 0.6}));
+    site.floor(add_material(site.scene, wood()));
+    site.cube(-0.3, 0, 0, 0.6, 0, body);
+    site.cube(gap ? 0.3 + 0x1p-13 : 0.3, 0.1, 0, 0.6, 0, body);
+    site.look({1.4, -3.6, 2.1}, {0, 0, 0.3}, 25);
+    const int sky = add_material(site.scene, paper(site.scene.background));
+    if (far > 0) add_object(site.scene, SphereObject{site.place(dvec3(-0.5, -0.7, 0.6) * far), far / 8}, sky);
+    return site.scene;
+}
+
+Render far_away(double contact = 0) {
+    return [=](Stage& stage, Tally& tally) {
+        uint64_t number = 0;
+        for (const Ground& ground : grounds)
+            for (const bool gap : {false, true})
+                for (const double far : {8.0, 16.0, 1e3, 1e6})
+                    if (far < 100 || stage.in_double())  // where the precision holds the gap
+                        expect_same_picture(stage, tally, beside(ground, gap, far, contact), beside(ground, gap, 0, 0),
+                                            number++);
+    };
+}
+
 // ---- sheets that lie on sheets and on faces of solids: the one declared later is seen
 
 /// What decals lie on.
@@ -437,6 +468,8 @@ void add_contact(Cases& cases) {
     add("decals/on-a-mesh", raised, decals(Under::mesh));
     add("decals/on-glass", "each pixel is one of the label raised by 2^-14, or one of it lowered", label_on_glass);
 
+    add("far", "the picture without what is far away, of bodies that touch and of bodies 2^-13 apart", far_away());
+
     const auto shadows = [&](const std::string& name, const Render& render) {
         cases.images("shadows/" + name, "every pixel that is not within 0.001 of an edge", bound_of_colors, render);
     };
@@ -461,6 +494,8 @@ void add_contact(Cases& cases) {
     without("tinted-shadow", is_off, tinted({floor_, mesh_floor, edge, two_quads}));
     without("apart/on-a-floor", fails, apart({floor_}, Shape::planes));
     without("apart/stack", fails, apart({stack}, Shape::planes));
+    cases.images("broken/far", "with a tolerance that a scene of 2^8 would have the case fails", fails,
+                 far_away(0x1p-12));
 }
 
 }  // namespace cistula::verify

@@ -116,6 +116,64 @@ Render at_offset(Look look) {
     };
 }
 
+// ---- walls and coats that are thinner and thinner: each looks like the first
+
+/// A glass cube with a hollow whose top is `wall` under its own, over a checker.
+SceneDescription hollow_cube(double wall) {
+    SceneDescription scene = empty_scene();
+    scene.film.width = 48, scene.film.height = 36;
+    scene.depth = 7;
+    scene.background = {0.3, 0.4, 0.55};
+    scene.ambient = glm::dvec3(0.3);
+    scene.camera.position = {3, -5, 2.6};
+    scene.camera.target = {0, 0, 0.4};
+    scene.camera.field_of_view = 36;
+    add_checker(scene, glm::dvec2(0.5));
+    add_object(scene, DiskObject::plane({0, 0, 1}, -1));
+    TrianglesObject shell = triangulated_solid(solid_object(PlatonicSolid::cube, glm::dvec3(0), std::sqrt(3.0)));
+    TrianglesObject hollow = shell;
+    for (glm::dvec3& p : hollow.vertices) p = {0.5 * p.x, 0.5 * p.y, p.z > 0 ? 1 - wall : -0.5};
+    const auto outer = uint32_t(shell.vertices.size());
+    shell.vertices.insert(shell.vertices.end(), hollow.vertices.begin(), hollow.vertices.end());
+    for (const auto& t : hollow.triangles) shell.triangles.push_back({t[0] + outer, t[2] + outer, t[1] + outer});
+    shell.uvs.clear();
+    add_object(scene, shell, add_material(scene, glass(1.5, true)));
+    return scene;
+}
+/// A red ball in a coat of glass.
+SceneDescription coated_ball(double coat) {
+    SceneDescription scene = empty_scene();
+    scene.film.width = 48, scene.film.height = 36;
+    scene.depth = 6;
+    scene.ambient = glm::dvec3(0.5);
+    scene.background = glm::dvec3(1);
+    scene.camera.position = {0, -4, 0};
+    scene.camera.target = {0, 0, 0};
+    scene.camera.field_of_view = 40;
+    add_object(scene, SphereObject{glm::dvec3(0), 1}, add_material(scene, paper({0.8, 0.05, 0.05})));
+    add_object(scene, SphereObject{glm::dvec3(0), 1 + coat}, add_material(scene, glass(1.5, true)));
+    return scene;
+}
+
+Render thinner(SceneDescription (*make)(double), const std::vector<double>& sizes) {
+    return [=](Stage& stage, Tally& tally) {
+        std::vector<SceneDescription> scenes;
+        for (const double size : sizes) scenes.push_back(make(size));
+        expect_alike(stage, tally, scenes);
+    };
+}
+/// What float would show where it warns.
+Render float_of_thin(SceneDescription (*make)(double), double first, double thin) {
+    return [=](Stage& stage, Tally& tally) {
+        const auto film = [&](double size) {
+            const SceneDescription scene = make(size);
+            return stage.render(scene, 4 * scene.film.width, 4 * scene.film.height);
+        };
+        const Film expected = film(first);
+        expect_one_of(tally, film(thin), {&expected}, 0);
+    };
+}
+
 }  // namespace
 }  // namespace size
 
@@ -152,6 +210,15 @@ void add_size(Cases& cases) {
                      no_failures("pixels"), at_offset(look));
     }
     cases.images("sun/seen", as_near, warns, sun(Look::shadow, true));
+    const Bound float_fails{Measure::failures, true, {20, 0}, "pixels"};
+    cases.images("wall", "a hollow under a wall of 4e-4 to 1e-8: the picture of one of 1e-3", warns,
+                 thinner(hollow_cube, {1e-3, 4e-4, 1e-4, 1e-5, 1e-6, 1e-8}));
+    cases.images("coat", "a coat of 1e-5 to 1e-10 on a ball of 1: the picture of one of 1e-4", warns,
+                 thinner(coated_ball, {1e-4, 1e-5, 3e-6, 3e-7, 1e-8, 1e-10}));
+    cases.images("broken/float-of-a-thin-wall", "without the warning: in float rays are lost in the wall", float_fails,
+                 float_of_thin(hollow_cube, 1e-3, 1e-5));
+    cases.images("broken/float-of-a-coat", "without the warning: in float there is no coat", float_fails,
+                 float_of_thin(coated_ball, 1e-4, 3e-7));
 }
 
 }  // namespace cistula::verify
