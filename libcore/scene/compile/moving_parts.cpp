@@ -42,8 +42,7 @@ struct MeshBall {
 
 /// The number of a shape that its parts are multiples of; 1: none changes their size alone.
 double size_of(const decltype(ObjectDescription::shape)& shape) {
-    if (const auto* solid = std::get_if<SolidObject>(&shape))
-        return solid->body ? solid->radius * polyhedron_of(*solid).inradius : solid->radius;
+    if (const auto* solid = std::get_if<SolidObject>(&shape)) return solid->radius * polyhedron_of(*solid).inradius;
     if (const auto* sphere = std::get_if<SphereObject>(&shape)) return sphere->radius;
     if (const auto* mesh = std::get_if<MeshObject>(&shape)) return mesh->scale;
     return 1;
@@ -91,11 +90,11 @@ MovingParts::MovingParts(const SceneDescription& description, const SceneAssets&
             part.lights.push_back(light);
             parts.push_back(
                 {{light.position - dvec3(light.radius), light.position + dvec3(light.radius)}, light.radius});
+            if (light.shown()) box.add(parts.back().box);
         }
         const SceneSource source = named_by_frame(part, [&] { return gather(part); });
         for (const SourceSolid& solid : source.solids) parts[gathered[solid.object]].box.add(world_box(solid));
-        box.add(world_box(source));
-        for (const auto& [i, mesh] : meshes) box.add(mesh.box(std::get<MeshObject>(at.objects[i].shape)));
+        for (size_t k = 0; k < motion.objects.size(); ++k) box.add(parts[k].box);
         frames_.push_back(std::move(parts));
     }
 }

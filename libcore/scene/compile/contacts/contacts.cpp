@@ -99,6 +99,7 @@ class ContactSearch {
             pads_[i] =
                 max_or_second(contacts_.solids[i].reach.own, max_or_second(told * above * tau_of(i), least_told_ / 2));
         const NearSolids near(boxes, pads_);
+        const double in_crowd = max_or_second(largest_own(), tau());
         tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
             size_t asked = 0;
             double farthest = contacts_.solids[i].reach.own;
@@ -106,7 +107,7 @@ class ContactSearch {
                 farthest = max_or_second(most_between(i, other), farthest);
                 return ++asked > most_asked;
             });
-            farthest_[i] = crowd ? max_or_second(largest_own(), tau()) : farthest;
+            farthest_[i] = crowd ? in_crowd : farthest;
         });
         for (uint32_t i = 0; i < count; ++i) pads_[i] = max_or_second(farthest_[i], pads_[i]);
     }
@@ -232,8 +233,8 @@ class ContactSearch {
         for (const Pair& pair : parted_) sets.part(pair.first, pair.second);
         join_pairs(sets, as_given_);
         for (const Pair& pair : closed_)
-            if (!joins(sets, pair.first, pair.second) && !joins(sets, pair.second, pair.first))
-                refuse_gap(faces_[pair.first].solid, faces_[pair.second].solid, pair.distance);
+            if (!joins(sets, pair.first, pair.second) && !joins(sets, pair.second, pair.first)) refuse_gap(pair);
+        closed_.clear();
         move_bodies(sets);
     }
 
@@ -245,13 +246,14 @@ class ContactSearch {
     }
 
     /// Refuses a gap that stays open and that rounding in double closes.
-    [[noreturn]] void refuse_gap(uint32_t a, uint32_t b, double gap) const {
+    [[noreturn]] void refuse_gap(const Pair& pair) const {
+        const uint32_t a = faces_[pair.first].solid, b = faces_[pair.second].solid;
         const SourceSolid &first = source_.solids[std::min(a, b)], &second = source_.solids[std::max(a, b)];
         throw scene_error(
             *source_.description, second.place,
             fmt::format("{} is {:.2g} from {}: {}, and double precision does not hold that gap in a scene "
                         "that reaches {:.2g} far",
-                        name_of(second), gap / normalization_.factor, first.place, name_of(first),
+                        name_of(second), pair.distance / normalization_.factor, first.place, name_of(first),
                         normalization_.extent / normalization_.factor),
             "bring what is far away nearer, or close the gap");
     }
@@ -287,6 +289,7 @@ class ContactSearch {
         PlaneSets sets(faces_, as_moved_);
         find_flat_sheets();
         find_pairs(as_moved_);
+        if (!closed_.empty()) refuse_gap(closed_.front());
         join_pairs(sets, as_moved_);
         list_planes();
     }
@@ -377,9 +380,9 @@ class ContactSearch {
     size_t number_of(const FlatFace& face) const { return size_t(face.body - bodies_.data()); }
 
     /// Pairs of faces, found in a part: those that touch, those that lie over one another apart, where a third one may
-    /// join them, and those that nearly touch.
+    /// join them, those that nearly touch, and those of a gap that double closes.
     struct FoundPairs {
-        std::vector<Pair> touching, parted, near;
+        std::vector<Pair> touching, parted, near, closed;
         size_t size() const { return touching.size() + parted.size() + near.size(); }
     };
 
@@ -396,17 +399,13 @@ class ContactSearch {
         };
         if (kept > limits_.touching) refuse_crowd(limits_.touching, pairs_of, solid_of, "touch or nearly touch");
         for (FoundPairs& found : parts) {
-            std::sort(found.near.begin(), found.near.end(), [](const Pair& a, const Pair& b) {
-                return a.first != b.first ? a.first < b.first : a.second < b.second;
-            });
+            for (std::vector<Pair>* pairs : {&found.near, &found.closed})
+                std::sort(pairs->begin(), pairs->end(), [](const Pair& a, const Pair& b) {
+                    return a.first != b.first ? a.first < b.first : a.second < b.second;
+                });
             pairs_.insert(pairs_.end(), found.touching.begin(), found.touching.end());
             parted_.insert(parted_.end(), found.parted.begin(), found.parted.end());
-            if (test.exact() && !found.near.empty()) {
-                const Pair& closed = found.near.front();
-                refuse_gap(faces_[closed.first].solid, faces_[closed.second].solid, closed.distance);
-            }
-            for (const Pair& near : found.near)
-                if (near.distance <= 2 * exact_) closed_.push_back(near);
+            closed_.insert(closed_.end(), found.closed.begin(), found.closed.end());
             for (const Pair& near : found.near)
                 add_near(faces_[near.first], faces_[near.second], near.distance, contacts_.near);
         }
@@ -471,11 +470,12 @@ class ContactSearch {
             if (!one_solid || !test.exact() || a.body->flat || FaceTest::overlapping(a, b))
                 found.touching.push_back({distance, i, j});
             if (const double gap = one_solid || !test.exact() ? 0 : closed_gap(a, b); gap > 0)
-                found.near.push_back({gap, i, j});
+                found.closed.push_back({gap, i, j});
         } else if (!test.exact() && !one_solid && distance <= told_between(a, b) && boxes_touch(a, b, 2 * distance) &&
                    magnitude(dot(a.normal, b.normal)) > 0.5 && FaceTest::meeting(a, b, 2 * distance)) {
             if (distance <= farthest_[a.solid] + farthest_[b.solid] && FaceTest::overlapping(a, b))
                 found.parted.push_back({distance, i, j});
+            if (distance <= 2 * exact_) found.closed.push_back({distance, i, j});
             found.near.push_back({distance, i, j});
         }
     }

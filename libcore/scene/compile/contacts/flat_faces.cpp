@@ -19,6 +19,11 @@ int level_of(const Box& box) {
     return -1;
 }
 
+/// Half the longest side of a box.
+double half_longest(const Box& box) {
+    return box.empty() ? 0 : largest_component(box.high - box.low) / 2;
+}
+
 FlatFace empty_face(const ContactBody& body, bool as_given) {
     FlatFace face{};
     face.body = &body;
@@ -253,7 +258,7 @@ std::vector<dvec3> BodyPlace::vertices(const SourceSolid& solid, double factor) 
 }
 
 double BodyPlace::half_side() const {
-    return span.empty() ? 0 : largest_component(span.high - span.low) / 2;
+    return half_longest(span);
 }
 
 ContactRange::ContactRange(const SceneSource& source, double factor) : contact_(source.description->contact) {
@@ -263,10 +268,9 @@ ContactRange::ContactRange(const SceneSource& source, double factor) : contact_(
 double ContactRange::tau(const BodyPlace& a, const BodyPlace& b) const {
     if (a.endless && b.endless) return ulps(a, b);
     if (a.endless || b.endless) return share * (a.endless ? b : a).half_side();
-    const dvec3 way = b.anchor - a.anchor;
-    BodyPlace both = a;
-    both.span.add({b.span.low + way, b.span.high + way});
-    return share * both.half_side();
+    Box both = a.span;
+    both.add(moved(b.span, b.anchor - a.anchor));
+    return share * half_longest(both);
 }
 
 double ContactRange::tolerance(const BodyPlace& a, const BodyPlace& b, double rounding, double most) const {
@@ -292,6 +296,10 @@ bool touch(const Box& a, const Box& b, double pad) {
 
 Box padded(const Box& box, double pad) {
     return {box.low - dvec3(pad), box.high + dvec3(pad)};
+}
+
+Box moved(const Box& box, const dvec3& way) {
+    return {box.low + way, box.high + way};
 }
 
 NearSolids::NearSolids(std::vector<Box> boxes, std::vector<double> pads)

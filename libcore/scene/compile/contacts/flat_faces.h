@@ -106,6 +106,7 @@ inline constexpr uint32_t most_in_full = 4096;
 /// Whether two boxes, one of them grown by `pad`, touch.
 bool touch(const Box& a, const Box& b, double pad);
 Box padded(const Box& box, double pad);
+Box moved(const Box& box, const glm::dvec3& way);
 
 /// Finds solids whose boxes, each grown by its own pad, meet another's.
 class NearSolids {

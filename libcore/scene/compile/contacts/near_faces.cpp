@@ -93,7 +93,7 @@ bool overlap_by(const FlatFace& a, const FlatFace& b, double least) {
     const dvec3 way = way_between(a, b);
     const double pad = 2 * reach(a, b);  // above all distances from the plane in which they may overlap
     const std::vector<Triangle> of_b = triangles_of(b, way, padded(a.box, pad));
-    const std::vector<Triangle> of_a = triangles_of(a, dvec3(0), padded({b.box.low + way, b.box.high + way}, pad));
+    const std::vector<Triangle> of_a = triangles_of(a, dvec3(0), padded(moved(b.box, way), pad));
     if (of_a.size() * of_b.size() <= few_pairs) {
         for (size_t j = 0; j < of_b.size(); ++j)
             for (size_t i = 0; i < (one ? j : of_a.size()); ++i)
@@ -123,8 +123,7 @@ double FaceTest::tolerance(const FlatFace& plane, const FlatFace& face, const Ro
                             min_or_second(plane.body->reach.most, face.body->reach.most));
 }
 
-bool FaceTest::lies_in(const FlatFace& plane, const FlatFace& face) const {
-    const double farthest = farthest_from(plane, face);
+bool FaceTest::lies_in(const FlatFace& plane, const FlatFace& face, double farthest) const {
     if (exact()) return farthest <= exact_;
     const Rounding written = rounding(plane, face);
     if (farthest <= tolerance(plane, face, written)) return true;
@@ -133,9 +132,9 @@ bool FaceTest::lies_in(const FlatFace& plane, const FlatFace& face) const {
     const Leverage leverage(plane);
     const dvec3 way = way_between(plane, face);
     return std::all_of(face.corners.begin(), face.corners.end(), [&](uint32_t corner) {
-        const dvec3 p = face.points()[corner] + way;
-        return magnitude(dot(plane.normal, p) - plane.offset) <=
-               tolerance(plane, face, {leverage.at(p) * written.plane, written.face});
+        const dvec3& p = face.points()[corner];
+        return magnitude(signed_distance(plane, face, p)) <=
+               tolerance(plane, face, {leverage.at(p + way) * written.plane, written.face});
     });
 }
 
@@ -143,8 +142,7 @@ double FaceTest::distance(const FlatFace& a, const FlatFace& b) const {
     const bool first = is_larger(a, b);
     const FlatFace &large = first ? a : b, &small = first ? b : a;
     if (large.is_endless() && small.is_endless() && !are_parallel(large.normal, small.normal)) return INFINITY;
-    if (magnitude(dot(large.normal, small.middle + way_between(large, small)) - large.offset) > 2 * reach(a, b))
-        return INFINITY;
+    if (magnitude(signed_distance(large, small, small.middle)) > 2 * reach(a, b)) return INFINITY;
     return farthest_from(large, small);
 }
 
@@ -153,12 +151,11 @@ bool FaceTest::touching(const FlatFace& a, const FlatFace& b, double distance) c
     const bool first = is_larger(a, b);
     const FlatFace &large = first ? a : b, &small = first ? b : a;
     const double most = tolerance(large, small);
-    return boxes_touch(a, b, 2 * most) && lies_in(large, small) && (exact() || meeting(a, b, 2 * most));
+    return boxes_touch(a, b, 2 * most) && lies_in(large, small, distance) && (exact() || meeting(a, b, 2 * most));
 }
 
 bool boxes_touch(const FlatFace& a, const FlatFace& b, double pad) {
-    const dvec3 way = way_between(a, b);
-    return touch(a.box, {b.box.low + way, b.box.high + way}, pad);
+    return touch(a.box, moved(b.box, way_between(a, b)), pad);
 }
 
 bool FaceTest::overlapping(const FlatFace& a, const FlatFace& b) {

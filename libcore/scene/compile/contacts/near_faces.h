@@ -42,9 +42,10 @@ class FaceTest {
         return exact() ? exact_ : tolerance(plane, face, rounding(plane, face));
     }
 
-    /// Whether a face's corners lie in a larger one's plane: within the tolerance, or where the plane may be by the
-    /// rounding of its corners, which moves it the more the farther beyond them.
-    bool lies_in(const FlatFace& plane, const FlatFace& face) const;
+    /// Whether a face's corners, the farthest of them so far from a larger one's plane, lie in it: within the
+    /// tolerance, or where the plane may be by the rounding of its corners, which moves it the more the farther beyond
+    /// them.
+    bool lies_in(const FlatFace& plane, const FlatFace& face, double farthest) const;
 
     /// The largest distance of the smaller face's corners from the larger one's plane; without end where their middle
     /// is beyond all tolerances.

@@ -15,7 +15,7 @@ bool PlaneSets::join(uint32_t a, uint32_t b) {
     const FlatFace& plane = faces_[kept.largest];
     for (const uint32_t i : added.members) {
         const FlatFace& face = faces_[i];
-        if (!test_.lies_in(plane, face)) return false;
+        if (!test_.lies_in(plane, face, farthest_from(plane, face))) return false;
         const auto apart = apart_.find(i);
         if (apart != apart_.end())
             for (const uint32_t other : apart->second)
