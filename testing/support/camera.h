@@ -30,7 +30,7 @@ inline CameraDescription random_camera(Random& random, const CameraDescription& 
 /// A view from `position` along -z.
 inline FrameView frame_from(const glm::dvec3& position, double tangent, int width, int height) {
     FrameView frame;
-    frame.camera.position = position;
+    frame.camera.position = frame.camera_sides[0].start = position;
     frame.camera.forward = {0, 0, -1};
     frame.camera.right = {1, 0, 0};
     frame.camera.up = {0, 1, 0};

@@ -42,7 +42,9 @@ TYPED_TEST(Planes, DoNotCountForTheExtent) {
     EXPECT_EQ(compiled->shared_planes[plane.plane].normal, Vec3<Real>(0, 0, 1));
     EXPECT_EQ(compiled->shared_planes[plane.plane].offset, Real(18));
     EXPECT_EQ(plane.center, Vec3<Real>(0, 0, 18));
-    EXPECT_EQ(plane.square, Real(0x1p24 - 18 * 18));
+    EXPECT_EQ(plane.square, Real(0x1p24));
+    EXPECT_EQ(plane.least_slope, horizon<Real>);
+    EXPECT_GT(compiled->disks[1].least_slope, Real(1)) << "a disk ends";
     EXPECT_EQ(compiled->disks[1].square, Real(1));
     EXPECT_TRUE(compiled->convex.empty() && compiled->clusters.empty());
     EXPECT_NEAR(smallest_part(scene).share, std::sqrt(0.5), 1e-12) << "half the width of the disk's square";
@@ -137,8 +139,11 @@ TYPED_TEST(Planes, AreMetFromBeyondTheScene) {
         EXPECT_NEAR(down[i].second, at[i], 1e-4);
     }
     EXPECT_EQ(hits({50, 0, Real(2 * high)}, {0, 0, -1}).size(), 2u);
-    EXPECT_EQ(hits({5000, 0, 1}, {0, 0, -1}).size(), 0u) << "beyond the horizon";
-    EXPECT_EQ(hits({4000, 0, 1}, {0, 0, -1}).size(), 1u);
+    for (const double aside : {4e3, 5e3, 1e9}) EXPECT_EQ(hits({Real(aside), 0, 1}, {0, 0, -1}).size(), 1u);
+    const Real flat = horizon<Real>;
+    EXPECT_EQ(hits({0, 3, 1}, {1, 0, -flat}).size(), 1u);
+    EXPECT_EQ(hits({0, 3, 1}, {1, 0, -flat / 2}).size(), 0u) << "too flat for so far away";
+    EXPECT_EQ(hits({0, 3, flat}, {1, 0, -flat / 2}).size(), 1u) << "near, any line meets it";
 }
 
 TYPED_TEST(Planes, HoldLights) {

@@ -10,6 +10,7 @@
 #include <tbb/task_arena.h>
 
 #include "base/error.h"
+#include "cistula/model/scene_access.h"
 #include "cistula/numerics/transmittance.h"
 #include "testing/support/scene_samples.h"
 
@@ -292,6 +293,30 @@ TYPED_TEST(CompileScene, OpaqueMaterialsLetNoRayPass) {
         const auto compiled = compile_scene<TypeParam>(scene);
         EXPECT_EQ(compiled->materials[0].transparency == Transparency::opaque, one.opaque);
         EXPECT_EQ(compiled->materials[0].absorption.x == 0, one.opaque);
+    }
+}
+
+TYPED_TEST(CompileScene, GlassThatSplitsAllLightIsWhole) {
+    const struct {
+        double reflection, transmission, tint;
+        bool fresnel;
+        Transparency expected;
+    } all[] = {{0.1, 0.9, 1, true, Transparency::whole},       {0.3, 0.7, 1, true, Transparency::whole},
+               {1, 0, 1, true, Transparency::whole},           {0.3, 0.7000005, 1, true, Transparency::whole},
+               {0.1, 0.9, 0.999, true, Transparency::partial}, {0.1, 0.89, 1, true, Transparency::partial},
+               {0.1, 0.9, 1, false, Transparency::partial},    {0, 1, 1, true, Transparency::clear}};
+    for (const auto& one : all) {
+        SceneDescription scene = empty_scene();
+        scene.materials[0] = samples::material("glass", one.reflection, one.transmission);
+        scene.materials[0].tint = glm::dvec3(one.tint);
+        scene.materials[0].fresnel = one.fresnel;
+        add_object(scene, solid(PlatonicSolid::cube));
+        add_object(scene, square(1, 3));
+        const auto compiled = compile_scene<TypeParam>(scene);
+        const SceneView<TypeParam> view = compiled->view();
+        EXPECT_EQ(compiled->materials[0].transparency, one.expected);
+        EXPECT_EQ(is_clear(view, 0), one.expected >= Transparency::whole);
+        EXPECT_EQ(is_clear(view, 1), one.expected == Transparency::clear) << "sheets take no Fresnel's terms";
     }
 }
 

@@ -1,6 +1,9 @@
 // Normals of compiled meshes (docs/rules.md, 17): which corners have which, what is flat, and what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "cistula/model/triangle_sides.h"
 #include "cistula/shading/smooth.h"
 #include "scene/compile/compiled_scene.h"
@@ -259,6 +262,74 @@ TEST(SmoothMeshes, CallForTheirEffect) {
     EXPECT_TRUE((required_effects(flat) & effect_smooth) == 0);
     mesh.normals.clear();
     EXPECT_EQ(hash(), compile_scene<float>(flat)->hashes.of(0)) << "normals that are not used do not count";
+}
+
+/// A ball of glass with a hole, and what fills that: its corners in another order, and moved by so much at random.
+SceneDescription filled_cup(const std::function<void(TrianglesObject&)>& change, double off = 0) {
+    const TrianglesObject filling = ball();
+    TrianglesObject cup = ball();
+    for (dvec3& p : cup.vertices) p *= 1.2;
+    const auto first = uint32_t(cup.vertices.size());
+    for (size_t i = 0; i < filling.vertices.size(); ++i) {
+        cup.vertices.push_back(filling.vertices[i] + off * std::sin(double(i)) * dvec3(1, 0.3, -0.7));
+        cup.normals.push_back(-filling.normals[i]);
+    }
+    for (const auto& t : filling.triangles) cup.triangles.push_back({first + t[1], first + t[0], first + t[2]});
+    SceneDescription scene = empty_scene();
+    scene.materials.push_back(samples::material("glass", 0, 1));
+    add_object(scene, cup, 1);
+    TrianglesObject changed = filling;
+    change(changed);
+    add_object(scene, changed, 1);
+    return scene;
+}
+size_t flat_corners(const CompiledScene<double>& scene) {
+    size_t flat = 0;
+    for_each_corner(scene, [&](const auto&, const Vec3<double>* normals, int) { flat += normals == nullptr; });
+    return flat;
+}
+
+TEST(SmoothMeshes, KeepNormalsWhereEqualFacesTouch) {
+    const auto scene = compile_scene<double>(filled_cup([](TrianglesObject&) {}));
+    EXPECT_GE(scene->shared_planes.size(), 80u);
+    EXPECT_EQ(flat_corners(*scene), 0u);
+    EXPECT_TRUE(scene->warnings.empty());
+    const auto turned = compile_scene<double>(filled_cup([](TrianglesObject& mesh) {
+        std::reverse(mesh.triangles.begin(), mesh.triangles.end());
+        for (auto& t : mesh.triangles) t = {t[1], t[2], t[0]};
+        for (dvec3& n : mesh.normals) n = normalized(n + 0x1p-10 * dvec3(0.6, 0.8, 0));
+    }));
+    EXPECT_EQ(flat_corners(*turned), 0u) << "as far as normals agree";
+}
+
+TEST(SmoothMeshes, AreFlatAndSaySoWhereFacesThatTouchDiffer) {
+    const auto expect_flat = [](const SceneDescription& scene, size_t corners, const std::string& warning) {
+        const auto compiled = compile_scene<double>(scene);
+        EXPECT_EQ(flat_corners(*compiled), corners);
+        ASSERT_EQ(compiled->warnings.size(), 1u);
+        EXPECT_NE(compiled->warnings[0].find(warning), std::string::npos) << compiled->warnings[0];
+    };
+    expect_flat(filled_cup([](TrianglesObject& mesh) {
+                    for (dvec3& n : mesh.normals) n = normalized(n + 0x1p-6 * dvec3(0.6, 0.8, 0));
+                }),
+                480, "160 smooth triangles where bodies touch are made flat, first against /objects/1");
+    expect_flat(filled_cup([](TrianglesObject& mesh) { mesh.smooth = 0, mesh.keep_triangles = true; }), 480,
+                "/objects/0: object 0: 80 smooth triangles where bodies touch are made flat, first against /objects/1");
+    SceneDescription decal = filled_cup([](TrianglesObject&) {});
+    const TrianglesObject round = ball();
+    TrianglesObject part;
+    for (const uint32_t v : round.triangles[7]) part.vertices.push_back(round.vertices[v]);
+    part.vertices[2] = 0.5 * (part.vertices[0] + part.vertices[2]);
+    part.triangles = {{0, 1, 2}};
+    add_object(decal, part);
+    expect_flat(decal, 9, "2 smooth triangles where bodies touch are made flat, first against /objects/2");
+}
+
+/// What bodies with digits of their own cannot share is said, whatever else they share.
+TEST(SmoothMeshes, SayWhereTheyTouchButShareNoPlane) {
+    const auto scene = compile_scene<double>(filled_cup([](TrianglesObject&) {}, 1e-7));
+    ASSERT_FALSE(scene->warnings.empty());
+    EXPECT_NE(scene->warnings[0].find("touch but cannot be moved into one plane"), std::string::npos);
 }
 
 /// A light close to a coarse mesh, in the plane of a face, lights what stands out of it.

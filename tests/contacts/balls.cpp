@@ -392,7 +392,8 @@ class CheckedBalls {
         const Exact above =
             ideal_.opaque ? std::max(a, Exact(0)) : a;  // a start within rounding is where its line came from
         const ExactPoint place = from + (to - from) * (above / (above - b)), p = place - ExactPoint(quad.corner);
-        if (exact_length(place) > 0.99L * 0x1p12L * Exact(scene.extent)) return -1;  // beyond the horizon, or nearly
+        const Exact flattest = std::abs(a - b) / exact_length(to - from);
+        if (flattest < 16 * Exact(RealTraits<Real>::unit) && exact_length(place) > 0x1p11L) return -1;  // the horizon
         const ExactPoint e(quad.along), f(quad.across);
         const Exact u = exact_dot(p, e) / exact_dot(e, e), v = exact_dot(p, f) / exact_dot(f, f);
         const Exact inside = quad.radius > 0 ? Exact(quad.radius) - exact_length(p) : std::min({u, v, 1 - u, 1 - v});

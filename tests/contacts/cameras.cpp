@@ -81,5 +81,39 @@ TYPED_TEST(CamerasAtContacts, RaysStartWhereTheyGo) {
         }
 }
 
+/// Wherever a camera is that double sees beside planes, its rays start clearly on the same side of each.
+TYPED_TEST(CamerasAtContacts, StayOnTheirSideOfPlanes) {
+    using Real = TypeParam;
+    Random random(9);
+    FrameSettings settings;
+    settings.set_size(16, 16);
+    size_t moved = 0;
+    for (int turn = 0; turn < 500; ++turn) {
+        SceneDescription scene;
+        test::add_material(scene);
+        SphereObject ball;
+        test::add_object(scene, ball, 0);
+        const dvec3 normal = turn % 5 == 0 ? dvec3(0, 0, 1) : random.direction();
+        const double offset = random.between(-2, 2);
+        test::add_object(scene, DiskObject::plane(normal, offset), 0);
+        const double aside = std::pow(10, random.between(-1, 9));
+        const double height = std::pow(10, random.between(-7, 1)) * (random.below(2) == 0 ? 1 : -1);
+        scene.camera.position = (offset + height) * normal + aside * normalized(cross(normal, random.direction()));
+        const auto compiled = compile_scene<Real>(scene);
+        const double exact = dot(normal, scene.camera.position) - offset;
+        const double size = length(scene.camera.position), unit = double(RealTraits<Real>::unit);
+        if (std::abs(exact) < 64 * 0x1p-53 * size) continue;  // it may lie on it
+        const FrameView frame = frame_view(*compiled, camera_at(scene.camera, 0), settings);
+        ASSERT_EQ(frame.camera_planes, 0) << height << " " << aside;
+        const Vec3<double>& start = frame.camera_sides[0].start;
+        const double seen = double(distance_from(compiled->shared_planes[compiled->disks[0].plane], Vec3<Real>(start)));
+        EXPECT_GE((exact > 0 ? 1 : -1) * seen, 4 * unit * length(start)) << height << " " << aside;
+        const double way = length(start - frame.camera.position);
+        EXPECT_LE(way, 32 * unit * length(frame.camera.position));
+        moved += way > 0;
+    }
+    EXPECT_GE(moved, sizeof(Real) == sizeof(float) ? 100u : 0u);
+}
+
 }  // namespace
 }  // namespace cistula

@@ -61,6 +61,7 @@ TYPED_TEST(PrimaryRayTest, StartsWhereItEntersTheSceneSphere) {
             FrameView frame;
             const dvec3 forward = random.direction();
             frame.camera = camera_looking(forward * -distance, forward, max_or_second(4 / distance, 0.01));
+            frame.camera_sides[0].start = frame.camera.position;
             frame.is_far = is_far(frame.camera.position, double(scene.extent));
             frame.width = frame.height = 100;
             frame.camera_sides[0].media.add(3, 1);
@@ -95,6 +96,7 @@ TYPED_TEST(PrimaryRayTest, StartsWhereItEntersTheSceneSphere) {
     // Looking away.
     FrameView frame;
     frame.camera = camera_looking({0, -10, 0}, {0, -1, 0});
+    frame.camera_sides[0].start = frame.camera.position;
     frame.is_far = true;
     frame.width = frame.height = 10;
     Ray<Real> ray;

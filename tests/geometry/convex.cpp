@@ -241,6 +241,7 @@ TYPED_TEST(ConvexTest, FarCamerasSeeTheRightFace) {
             const dvec3 forward = random.direction();
             const dvec3 right = normalized(cross(forward, random.direction())), up = cross(right, forward);
             frame.camera = {forward * -distance, forward, right, up, 1.6 / distance};
+            frame.camera_sides[0].start = frame.camera.position;
             frame.is_far = is_far(frame.camera.position, double(view.extent));
             frame.width = frame.height = 100;
             const Quad doubt = Quad(8 * 0x1p-53 * distance) + Quad(16 * double(RealTraits<Real>::unit));

@@ -247,5 +247,86 @@ TYPED_TEST(ShadowTest, ASheetThatHoldsTheLightStopsNothing) {
     EXPECT_EQ(at(-0.8), Vec3<Real>(Real(0)));
 }
 
+/// Bodies of one glass that overlap take from light what their union does: half at each of its faces.
+TYPED_TEST(ShadowTest, FacesBetweenEqualIndicesDoNotDarken) {
+    using Real = TypeParam;
+    Random random(5);
+    size_t lines = 0, gained = 0;
+    for (int turn = 0; turn < 200; ++turn) {
+        SceneDescription description;
+        test::add_material(description, 0.5, 0.5, dvec3(1), 1.5);
+        description.materials[0].fresnel = true;
+        struct Body {
+            dvec3 center;
+            double size;  // radius, or half the side of a cube
+            bool is_ball;
+        };
+        std::vector<Body> bodies;
+        for (uint32_t i = 0; i < 2 + random.below(3); ++i) {
+            const Body body{0.6 * random.direction(), random.between(0.3, 0.9), random.below(2) == 0};
+            if (body.is_ball) {
+                SphereObject ball;
+                ball.center = body.center, ball.radius = body.size;
+                test::add_object(description, ball, 0);
+            } else {
+                TrianglesObject cube = triangulated_solid(
+                    {.solid = PlatonicSolid::cube, .center = body.center, .radius = body.size * std::sqrt(3.0)});
+                cube.keep_triangles = random.below(2) == 0;
+                test::add_object(description, cube, 0);
+            }
+            bodies.push_back(body);
+        }
+        const dvec3 lamp = 3.0 * random.direction();
+        test::add_light(description, lamp);
+        const auto compiled = test::compile<Real>(description);
+        const SceneView<Real> scene = compiled->view();
+        ASSERT_TRUE(scene.unseen_faces || bodies.size() < 2 || !scene.solids[0].may_touch);
+        for (int n = 0; n < 50; ++n) {
+            const dvec3 from = 2.5 * random.direction(), way = lamp - from;
+            std::vector<std::pair<double, double>> chords;
+            bool clear_of_edges = true;
+            for (const Body& body : bodies) {
+                double enter = 0, leave = 1;
+                const dvec3 off = from - body.center;
+                if (body.is_ball) {
+                    const double b = dot(off, way), a = dot(way, way),
+                                 square = b * b - a * (dot(off, off) - body.size * body.size);
+                    clear_of_edges &= std::abs(square) > 1e-2;
+                    if (square < 0) continue;
+                    enter = (-b - std::sqrt(square)) / a, leave = (-b + std::sqrt(square)) / a;
+                } else {
+                    for (int axis = 0; axis < 3; ++axis) {
+                        const double u = (-body.size - off[axis]) / way[axis], v = (body.size - off[axis]) / way[axis];
+                        enter = std::max(enter, std::min(u, v)), leave = std::min(leave, std::max(u, v));
+                    }
+                    clear_of_edges &= std::abs(leave - enter) > 1e-3;
+                    if (enter > leave) continue;
+                }
+                if (enter > 0 && enter < leave && leave < 1) chords.emplace_back(enter, leave);
+                clear_of_edges &= std::abs(enter) > 1e-3 && std::abs(leave - 1) > 1e-3;
+            }
+            std::sort(chords.begin(), chords.end());
+            int faces = 0;
+            double end = -1;
+            for (const auto& [enter, leave] : chords) {
+                clear_of_edges &= std::abs(enter - end) > 1e-4;
+                faces += enter > end ? 2 : 0;
+                end = std::max(end, leave);
+            }
+            if (!clear_of_edges) continue;
+            const auto shadow =
+                TestFixture::toward(scene.lights[0], Vec3<Real>(TestFixture::in_frame(*compiled, from)));
+            const BruteIntersector<Real> brute{scene};
+            Vec3<Real> arrives = brute.template transmittance<All>(shadow);
+            const Real before = arrives.x;
+            gain_unseen_faces<All>(scene, brute, shadow, true, arrives);
+            EXPECT_EQ(arrives.x, Real(std::ldexp(1.0, -faces))) << turn << " " << n;
+            ++lines, gained += arrives.x > before;
+        }
+    }
+    EXPECT_GT(lines, 5000u);
+    EXPECT_GT(gained, 400u);
+}
+
 }  // namespace
 }  // namespace cistula

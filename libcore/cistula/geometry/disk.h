@@ -16,11 +16,14 @@ CISTULA_INLINE MaskOf<Real> is_beyond(ScalarOf<Real> extent, const Vec3<Real>& p
     return dot(place, place) > Real(ScalarOf<Real>(4.5) * extent * extent);
 }
 
-/// By how much slack grows where rays meet planes far away: 1 in the scene.
+/// By how much slack grows where rays meet planes far away: 1 in the scene, 2^60 at most.
 template <class Real>
 CISTULA_INLINE Real far_factor(ScalarOf<Real> extent, const Vec3<Real>& place) {
+    using T = ScalarOf<Real>;
     const MaskOf<Real> beyond = is_beyond(extent, place);
-    return any(beyond) ? select(beyond, length(place) * Real(ScalarOf<Real>(1) / extent), Real(1)) : Real(1);
+    if (!any(beyond)) return Real(1);
+    const Real size = length(place * Real(T(0x1p-32))) * Real(T(0x1p32) / extent);  // whose square may be too large
+    return select(beyond, min_or_second(size, Real(T(0x1p60))), Real(1));
 }
 
 /// Moves the start of rays beyond the sphere of radius 2 M to where they enter it, if they do, and returns by how much.
@@ -68,7 +71,9 @@ CISTULA_INLINE MaskOf<Real> cross_disk(const Scene& scene, const Disk<ScalarOf<R
     if (is_sheet_near_ball(solid)) t = time_near_ball(scene, solid, t, ray);
     at = along(ray.origin, t, ray.direction);
     const Vec3<Real> off = at - spread<Real>(disk.center);
-    return (!starts_there) & (t >= begin_of(ray)) & (dot(off, off) <= Real(disk.square));
+    const Real slope = magnitude(dot(spread<Real>(scene.shared_planes[disk.plane].normal), ray.direction));
+    const MaskOf<Real> on = (dot(off, off) <= Real(disk.square)) | (slope >= Real(disk.least_slope));
+    return (!starts_there) & (t >= begin_of(ray)) & on;
 }
 
 /// Takes crossings of disks as `best` if they are the rays' next, where `active` holds.

@@ -365,8 +365,8 @@ struct SmoothStart<Lanes<T, n>> {
         SmoothStart start{from, size > Real(least_lift<T> * scene.extent)};
         for_each_lane(start.lifted & asked, [&](int lane) {
             const uint64_t key = KeyFormat<Real>::of_lane(hit.key, lane);
-            if (SmoothStart<T>::is_crossed(SingleIntersector<T>{scene}, key, lane_of(from, lane), lane_of(way, lane),
-                                           size[lane], around.of(lane).list()))
+            if (SmoothStart<T>::is_crossed(static_cast<const SceneView<T>&>(scene), SingleIntersector<T>{scene}, key,
+                                           lane_of(from, lane), lane_of(way, lane), size[lane], around.of(lane).list()))
                 start.lifted = start.lifted & !MaskOf<Real>::of_bits(1u << lane);
         });
         assign_where(start.lifted, start.place, from + way);

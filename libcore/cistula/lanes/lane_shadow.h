@@ -123,4 +123,18 @@ CISTULA_NOINLINE void shadow_beside(const Scene& scene, uint32_t index, const So
     if (any(enters)) add_entry<Real, E>(enters, scene.materials[solid.material], enter, leave, shadow.distance, sum);
 }
 
+/// Lines that may cross faces that rays pass unseen are followed one by one.
+template <class E, class T, int n, class Intersector>
+CISTULA_NOINLINE Lanes<T, n> gain_of_unseen_faces(const LaneScene<T>& scene, const Intersector&,
+                                                  const ShadowRay<Lanes<T, n>, LaneMedia<Lanes<T, n>>>& shadow,
+                                                  const MaskOf<Lanes<T, n>>& active) {
+    Lanes<T, n> gain(T(1));
+    for_each_lane(active, [&](int lane) {
+        const ShadowRay<T> one{lane_of<InteriorList>(shadow.ray, lane), shadow.distance[lane], shadow.light};
+        gain.set(lane, gain_of_unseen_faces<E>(static_cast<const SceneView<T>&>(scene), SingleIntersector<T>{scene},
+                                               one, true));
+    });
+    return gain;
+}
+
 }  // namespace cistula

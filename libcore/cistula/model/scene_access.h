@@ -16,10 +16,13 @@ CISTULA_INLINE bool is_opaque(const ConstantScene<Real>& scene, uint32_t solid) 
     return (scene.opaque_solids >> solid & 1u) != 0;
 }
 
-/// Whether a solid's material is clear: kr = 0, kt = 1, white tint.
+/// Whether a solid's faces pass all light unchanged between equal indices: a clear solid's, or a closed one's that
+/// splits all light by Fresnel's terms.
 template <class Real>
 CISTULA_INLINE bool is_clear(const SceneView<Real>& scene, uint32_t solid) {
-    return scene.materials[scene.solids[solid].material].transparency == Transparency::clear;
+    const Solid& one = scene.solids[solid];
+    const Transparency transparency = scene.materials[one.material].transparency;
+    return transparency == Transparency::clear || (transparency == Transparency::whole && one.kind != SolidKind::sheet);
 }
 template <class Real>
 CISTULA_INLINE bool is_clear(const ConstantScene<Real>& scene, uint32_t solid) {

@@ -52,17 +52,22 @@ struct alignas(16) BallPlane {
     uint32_t shared;    // the same plane among shared_planes, or no_plane
 };
 
-/// A disk on a shared plane. A plane without end is one whose rim is the horizon, 2^12 M from the scene's center.
+/// A disk on a shared plane. A plane without end is one of radius 2^12 M that goes on for all lines but the flattest.
 template <class Real>
 struct alignas(16) Disk {
     Vec3<Real> center;
     Real square;         // of the radius
+    Real least_slope;    // |n.d| of lines that meet it beyond the radius: `horizon` of planes, above 1 of disks
     Vec3<Real> axes[2];  // texture coordinates k of a point p: axes[k].p + shift[k]
     Real shift[2];
     uint32_t plane;  // among shared_planes
     uint32_t solid;
     uint32_t face;  // a number like those of triangles, of which it has one: triangle_planes[face] is `plane`
 };
+
+/// The |n.d| of a plane without end below which lines that are rounded once more may not tell on which side they go.
+template <class Real>
+inline constexpr Real horizon = 8 * RealTraits<Real>::unit;
 
 inline constexpr int slab_lanes = 8;
 
@@ -189,7 +194,8 @@ struct alignas(16) Facet {
 enum class Transparency : uint32_t {
     opaque,   // none passes: kt tint = 0; with fresnel, (kr + kt) tint = 0. A body of it is no medium
     partial,  // some light passes
-    clear,    // kr = 0, kt = 1, white tint: invisible unless the index changes
+    whole,    // of closed solids, with fresnel: kr + kt = 1, white tint, kr > 0: invisible unless the index changes
+    clear,    // kr = 0, kt = 1, white tint: likewise, and of sheets, too
 };
 
 /// A material. The shares of light are: local 1 - kr - kt, reflected kr, transmitted kt * tint.
@@ -338,6 +344,7 @@ struct SceneView {
     Vec3<Real> bound;    // radiance bound B per channel, at most 1, slack included
     Real largest_bound;  // largest component of bound
     Real extent;         // M: the largest coordinate, in [1, 2)
+    bool unseen_faces;   // whether shadow rays may cross faces that rays pass unseen (shadow.h)
 };
 
 /// Whether any material absorbs, so that transmittance toward lights varies gradually. Depends on the scene alone, not

@@ -131,7 +131,11 @@ class ContactStart {
         if (is_disk(solid_)) {
             const Disk<Real>& disk = scene_.disks[solid_.first_slab];
             const Real slope = dot(scene_.shared_planes[disk.plane].normal, plane.normal);
-            const Real reach = square_root(disk.square * max_or_second(Real(1) - slope * slope, Real(0)));
+            Real reach = square_root(disk.square * max_or_second(Real(1) - slope * slope, Real(0)));
+            if (disk.least_slope < Real(1)) {
+                const Vec3<Real> line = cross(scene_.shared_planes[disk.plane].normal, plane.normal);
+                reach = dot(line, line) > horizon<Real> * horizon<Real> ? RealTraits<Real>::infinity : Real(0);
+            }
             const Real middle = distance_from(plane, disk.center);
             look_at(middle - reach), look_at(middle + reach);
         } else {
@@ -312,20 +316,21 @@ struct SmoothStart {
         const Vec3<Real> way = bulge(corner, corner_normals(scene, hit.slot), hit, s.point);
         const Real size = length(way);
         if (!(size > least_lift<Real> * scene.extent)) return {from};
-        if (solid.slab_count != 0 && is_crossed(intersector, hit.key, from, way, size, around)) return {from};
+        if (solid.slab_count != 0 && is_crossed(scene, intersector, hit.key, from, way, size, around)) return {from};
         return {from + way, true};
     }
 
     /// Whether anything lies on a way from the face of a hit, of whatever side.
-    template <class Intersector, class Media>
-    CISTULA_NOINLINE static bool is_crossed(const Intersector& intersector, uint64_t key, Vec3<Real> from,
-                                            Vec3<Real> way, Real size, Media around) {
+    template <class Scene, class Intersector, class Media>
+    CISTULA_NOINLINE static bool is_crossed(const Scene& scene, const Intersector& intersector, uint64_t key,
+                                            Vec3<Real> from, Vec3<Real> way, Real size, Media around) {
         Ray<Real, Media> ray;
         ray.origin = from;
         ray.direction = way / size;
         ray.from_solid = key_solid(key);
         ray.from_face = key_face(key);
         ray.media = around;
+        find_start_plane<Effects<all_effects>>(scene, ray);
         ray.accept_both_sides();
         return unobserved(intersector).closest(ray).t < size;
     }

@@ -161,6 +161,8 @@ CISTULA_INLINE void add_local_light(const Scene& scene, const Intersector& inter
                 arrives = intersector.template transmittance<E>(shadow, lights);
             else
                 arrives = intersector.template transmittance<E>(shadow);
+            if constexpr (meets_unseen_faces<E, Media>)
+                if (scene.unseen_faces) gain_unseen_faces<E>(scene, intersector, shadow, lights, arrives);
             observer.arrives(i, shadow, arrives);
             const auto diffuse = [&] {
                 return weight * (arrives * phong<Real, Effects<E::mask & ~effect_specular>>(

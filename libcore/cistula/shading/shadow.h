@@ -5,7 +5,8 @@
 #include "cistula/geometry/convex.h"
 #include "cistula/geometry/disk.h"
 #include "cistula/numerics/transmittance.h"
-#include "cistula/shading/surface.h"
+#include "cistula/shading/interface.h"
+#include "cistula/shading/surface_event.h"
 
 namespace cistula {
 
@@ -322,6 +323,55 @@ CISTULA_INLINE void shadow_start(const Scene& scene, const ShadowRay<Real, Media
                                 scene.extent);
         });
     }
+}
+
+/// Whether shadow rays of a kernel may cross faces that rays pass unseen.
+template <class E, class Media>
+inline constexpr bool meets_unseen_faces =
+    E::has(effect_transparent_shadows) && E::has(effect_fresnel) && Media::contacts;
+
+/// 1 / kt of each face before the light that rays pass unseen between equal indices (Transparency::whole), all
+/// multiplied. A line is followed until it is in more solids than it can list, or meets a mesh from the wrong side. (In
+/// lanes: lane_shadow.h.)
+template <class E, class Real, class Media, class Intersector, class Scene>
+CISTULA_NOINLINE Real gain_of_unseen_faces(const Scene& scene, const Intersector& intersector,
+                                           ShadowRay<Real, Media> shadow, bool) {
+    Real gain = 1;
+    Ray<Real, Media>& ray = shadow.ray;
+    SurfaceEvent<Real, Media> event;
+    for (;;) {
+        const Hit<Real> hit = unobserved(intersector).closest(ray);
+        if (!(hit.t < shadow.distance)) return gain;
+        resolve_event<E>(scene, intersector, ray, hit, event);
+        if (!event.fits || event.wrong_side) return gain;
+        const bool equal = index_of(scene, ray.media) == index_of(scene, event.beyond);
+        const uint32_t shaded = key_solid(event.hit.key);
+        for (int i = 0; i < event.count; ++i) {
+            const uint32_t solid = key_solid(event.taken[i].key);
+            const Material<Real>& m = scene.materials[scene.solids[solid].material];
+            if (m.transparency != Transparency::whole || !(m.transmission > Real(0)) ||
+                scene.solids[solid].kind == SolidKind::sheet)
+                continue;
+            const bool beside = solid != shaded && m.index == scene.materials[scene.solids[shaded].material].index;
+            if ((equal || beside) && !lies_on(scene, *shadow.light, solid, key_face(event.taken[i].key)))
+                gain = gain / m.transmission;
+        }
+        ray.media = event.beyond;
+        ray.after = event.last();
+    }
+}
+
+/// Takes the faces that rays pass unseen out of a transmittance, whose sum has no order and cannot tell them.
+template <class E, class Real, class Media, class Intersector, class Scene>
+CISTULA_INLINE void gain_unseen_faces(const Scene& scene, const Intersector& intersector,
+                                      const ShadowRay<Real, Media>& shadow, const MaskOf<Real>& active,
+                                      Throughput<Real, E>& arrives) {
+    const Real gain = gain_of_unseen_faces<E>(scene, intersector, shadow, active);
+    const auto gained = [&](const Real& share) { return min_or_second(share * gain, Real(1)); };
+    if constexpr (std::is_same_v<Throughput<Real, E>, Real>)
+        arrives = gained(arrives);
+    else
+        arrives = {gained(arrives.x), gained(arrives.y), gained(arrives.z)};
 }
 
 }  // namespace cistula

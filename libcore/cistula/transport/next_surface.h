@@ -153,7 +153,7 @@ class NextSurface {
     }
 
     /// Whether a crossing has nothing to shade: it is one of a transparent solid inside a medium of higher priority, or
-    /// belongs to a clear face between equal media.
+    /// belongs to a face that changes nothing between equal indices.
     CISTULA_INLINE MaskOf<Real> invisible(const Ray<Real, Media>& ray, const SurfaceEvent<Real, Media>& event) const {
         if constexpr (!E::has(effect_transmission | effect_insides)) {
             return false;

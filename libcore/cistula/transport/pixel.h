@@ -9,7 +9,7 @@ namespace cistula {
 
 /// Where primary rays start, and inside which solids.
 struct CameraSide {
-    Vec3<double> start;  // of a camera that lies on faces; else rays start at the camera
+    Vec3<double> start;  // at the camera, or beside it if it lies on faces
     InteriorList media;  // found by camera_solids
 };
 
@@ -95,7 +95,7 @@ template <class Real, class Media, class Scene>
 CISTULA_HD inline bool primary_ray(const Scene& scene, const FrameView& frame, const Vec3<double>& direction,
                                    Ray<Real, Media>& ray, double& start) {
     const CameraSide& side = frame.camera_sides[camera_side(frame, direction)];
-    Vec3<double> origin = frame.camera_planes == 0 ? frame.camera.position : side.start;
+    Vec3<double> origin = side.start;
     start = 0;
     if (frame.is_far && !begin_from_afar(scene, direction, origin, ray, start)) return false;
     place(ray, origin, direction);
@@ -164,8 +164,7 @@ CISTULA_HD inline bool find_camera_solids(const Scene& scene, const Intersector&
     bool fits = true;
     for (int i = 0; i < 1 << frame.camera_planes; ++i) {
         CameraSide& side = frame.camera_sides[i];
-        fits &= camera_solids(scene, intersector, frame.camera_planes == 0 ? frame.camera.position : side.start,
-                              side.media);
+        fits &= camera_solids(scene, intersector, side.start, side.media);
     }
     return fits;
 }

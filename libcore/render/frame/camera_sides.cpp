@@ -32,7 +32,7 @@ class FacesAtCamera {
 
     /// `is_far`: it is beyond all but planes without end.
     std::vector<FacePlane> find(bool is_far) {
-        for (const Disk<Real>& disk : scene_.disks) look_at_disk(disk);
+        for (size_t i = 0; i < scene_.disks.size(); ++i) look_at_disk(scene_.disks[i], scene_.disk_planes[i]);
         if (is_far) return std::move(planes_);
         std::vector<bool> near(scene_.solids.size());
         for (size_t i = 0; i < scene_.solids.size(); ++i) near[i] = may_touch(scene_.hulls[i], scene_.reaches[i]);
@@ -95,16 +95,16 @@ class FacesAtCamera {
         for (const FacePlane& plane : at_camera) add(plane);
     }
 
-    void look_at_disk(const Disk<Real>& disk) {
-        const SharedPlane<Real>& plane = scene_.shared_planes[disk.plane];
-        const PlaneEquation equation{dvec3(plane.normal), double(plane.offset)};
-        const double rounding = with_slack(rounding_of(equation.normal, camera_size(), equation.offset), disk.plane);
+    /// On which side of a disk the camera is, double tells; rays start there in any precision (keep_sides).
+    void look_at_disk(const Disk<Real>& disk, const PlaneEquation& plane) {
+        constexpr double in_double = RealTraits<double>::unit / double(RealTraits<Real>::unit);
+        const double rounding = rounding_of(plane.normal, camera_size(), plane.offset);
         const dvec3 off = camera_ - dvec3(disk.center);
         Box box;
         box.add(camera_);
-        if (magnitude(equation.distance(camera_)) <= range(equation, box, rounding, disk.solid) &&
-            dot(off, off) <= double(disk.square))
-            add({equation.normal, equation.offset, apart * max_or_second(unit_, rounding)});
+        if (magnitude(plane.distance(camera_)) <= range(plane, box, in_double * rounding, disk.solid) &&
+            (disk.least_slope < Real(1) || dot(off, off) <= double(disk.square)))
+            add({plane.normal, plane.offset, apart * max_or_second(unit_, with_slack(rounding, disk.plane))});
     }
 
     void look_at_triangles(const Cluster<Real>& cluster) {
@@ -146,6 +146,22 @@ class FacesAtCamera {
     std::vector<FacePlane> planes_;
 };
 
+/// Moves the start of rays that rounding could put beyond a disk's plane off that, by 16 times their rounding at most:
+/// lines that come near it far from the scene are then met behind their start.
+template <class Real>
+void keep_sides(const CompiledScene<Real>& scene, dvec3& start) {
+    const double least = 8 * double(RealTraits<Real>::unit) * length(start);
+    for (int round = 0; round < 3; ++round)  // a step off one plane may lead back to another
+        for (size_t i = 0; i < scene.disks.size(); ++i) {
+            const double distance = scene.disk_planes[i].distance(start);
+            if (distance == 0) continue;
+            const double side = distance > 0 ? 1 : -1;
+            const double seen = side * double(distance_from(scene.shared_planes[scene.disks[i].plane],
+                                                            Vec3<Real>(Vec3<double>(start))));
+            if (seen < least) start += side * (2 * least - seen) * scene.disk_planes[i].normal;
+        }
+}
+
 }  // namespace
 
 template <class Real>
@@ -163,6 +179,7 @@ void set_camera_sides(const CompiledScene<Real>& scene, const dvec3& half_unit, 
                 const double distance = sign * (dot(planes[i].normal, start) - planes[i].offset);
                 if (distance < planes[i].apart) start += (planes[i].apart - distance) * sign * planes[i].normal;
             }
+        keep_sides(scene, start);
         frame.camera_sides[side].start = start;
     }
 }

@@ -22,6 +22,7 @@
 #include "cistula/geometry/ray.h"
 #include "cistula/lights/light_tree.h"
 #include "scene/compile/compiled_scene.h"
+#include "scene/compile/contacts/smooth_faces.h"
 #include "scene/compile/lights/compile_lights.h"
 #include "scene/compile/lights/radiance_bound.h"
 #include "scene/compile/materials/compile_materials.h"
@@ -122,6 +123,8 @@ class Compiler {
             scene_.solid_names.push_back(name_of(source_.solids[i]));
             scene_.solids[i].material = source_.solids[i].material;
         }
+        smooth_faces_ = find_smooth_faces(source_, bodies_);
+        if (!smooth_faces_.warning.empty()) scene_.warnings.push_back(smooth_faces_.warning);
         compile_meshes();
         settle_on_faces();
         add_shared_planes(scene_, bodies_.contacts);
@@ -196,12 +199,7 @@ class Compiler {
             primitives_[disk.solid] = effect_planes;
             flat_planes_[disk.solid] = disk.equation;
             places_.boxes[disk.solid] = disk.is_endless() ? bodies_.sizes[disk.solid].box : disk.box();
-            if (!disk.is_endless()) continue;
-            scene_.hulls[disk.solid].reach = INFINITY;
-            if (magnitude(disk.equation.offset) > horizon * normalization_.extent)
-                scene_.warnings.push_back(source_.solids[disk.solid].place +
-                                          ": the plane is not seen: it is more than 4,096 times as far away as the "
-                                          "scene is large");
+            if (disk.is_endless()) scene_.hulls[disk.solid].reach = INFINITY;
         }
     }
 
@@ -381,15 +379,15 @@ class Compiler {
         from.mesh = {};  // its triangles are now stored in the clusters
     }
 
-    /// Adds the normals of a mesh's corners. Triangles on shared planes are flat, and so are slivers that rounding has
-    /// turned away from their normals.
+    /// Adds the normals of a mesh's corners. Triangles on shared planes are flat but for those that keep their normals,
+    /// and so are slivers that rounding has turned away from their normals.
     void add_normals(uint32_t number, const NormalizedMesh& mesh) {
         scene_.solids[number].first_slab = static_cast<uint32_t>(scene_.normals.size()) + 1;
         for (uint32_t t = 0; t < mesh.size(); ++t) {
             const std::array<dvec3, 3>& normals = source_.solids[number].normals[t];
             const std::array<dvec3, 3> corners = mesh.triangle(t);
             const dvec3 face = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
-            bool is_flat = bodies_.contacts.plane_of(number, t) != no_plane;
+            bool is_flat = bodies_.contacts.plane_of(number, t) != no_plane && !smooth_faces_.keeps(number, t);
             double bulge = 0;
             for (size_t c = 0; c < 3; ++c) {
                 is_flat = is_flat || !(dot(normals[c], face) >= least_cosine / 2);
@@ -680,6 +678,7 @@ class Compiler {
     SolidPlaces places_;
     std::vector<uint32_t> primitives_;                       // the effect of what each solid is made of
     std::vector<std::optional<PlaneEquation>> flat_planes_;  // of each flat sheet
+    SmoothFaces smooth_faces_;
     uint32_t triangle_count_ = 0;
     RadianceScale scale_;
     SceneHash hash_;

@@ -89,6 +89,7 @@ SceneView<Real> CompiledScene<Real>::view() const {
     v.bound = bound;
     v.largest_bound = largest_component(bound);
     v.extent = extent;
+    v.unseen_faces = unseen_faces;
     return v;
 }
 

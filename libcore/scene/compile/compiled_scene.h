@@ -24,6 +24,14 @@ struct Hull {
     double reach = 0;  // infinite: everything
 };
 
+/// The plane normal.x = offset.
+struct PlaneEquation {
+    glm::dvec3 normal;
+    double offset;
+
+    double distance(const glm::dvec3& point) const { return dot(normal, point) - offset; }
+};
+
 /// Whether a scene needs one effect. `because` names the material, object or light that requires it, or says that none
 /// does.
 struct EffectReason {
@@ -59,10 +67,12 @@ struct CompiledScene {
     std::vector<uint32_t> light_groups;  // of each of lights
     std::vector<Hull> hulls;             // around everything visible
     std::vector<ContactReach> reaches;   // of each solid
+    std::vector<PlaneEquation> disk_planes;
     std::vector<SkyStop> sky_stops;
     Sky sky;
     Vec3<Real> background, bound;
     Real extent = 1;
+    bool unseen_faces = false;
 
     Vec3<double> center{0};  // of the frame: coordinates are (world - center) * 2^scale
     int scale = 0;

@@ -20,7 +20,7 @@ bool is_by_itself(const SceneView<Real>& scene, const Solid& solid) {
 /// Whether a SingleInterior says all about a scene's rays, and no mesh is smooth.
 template <class Real>
 bool has_single_interiors(const SceneView<Real>& scene) {
-    return scene.shared_planes.empty() && scene.normals.empty() &&
+    return scene.shared_planes.empty() && scene.normals.empty() && !scene.unseen_faces &&
            std::all_of(scene.solids.begin(), scene.solids.end(),
                        [&](const Solid& solid) { return is_by_itself(scene, solid); });
 }

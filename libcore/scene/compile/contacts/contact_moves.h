@@ -5,17 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "scene/compile/compiled_scene.h"
 #include "scene/compile/contacts/flat_faces.h"
 
 namespace cistula {
-
-/// The plane normal.x = offset.
-struct PlaneEquation {
-    glm::dvec3 normal;
-    double offset;
-
-    double distance(const glm::dvec3& point) const { return dot(normal, point) - offset; }
-};
 
 /// The most that a vertex is moved, in the largest tolerance of its faces.
 inline constexpr double most_moved = 4;

@@ -379,6 +379,12 @@ class ContactSearch {
 
     size_t number_of(const FlatFace& face) const { return size_t(face.body - bodies_.data()); }
 
+    /// A face of a solid that could not be moved into the plane of another's.
+    struct LeftFace {
+        uint32_t solid, other;
+        std::vector<uint32_t> parts;
+    };
+
     /// Pairs of faces, found in a part: those that touch, those that lie over one another apart, where a third one may
     /// join them, those that nearly touch, and those of a gap that double closes.
     struct FoundPairs {
@@ -593,8 +599,9 @@ class ContactSearch {
         const uint32_t face = left.face->number;
         plane_[face] = no_plane;
         const FlatFace& other = faces_[sets.set(sets.root(face)).largest];
-        if (other.solid != left.face->solid)
-            add_near(*left.face, other, farthest_from(other, *left.face), contacts_.apart);
+        if (other.solid == left.face->solid) return;
+        add_near(*left.face, other, farthest_from(other, *left.face), contacts_.apart);
+        left_.push_back({left.face->solid, other.solid, {left.face->parts.begin(), left.face->parts.end()}});
     }
 
     // ---- results
@@ -638,14 +645,23 @@ class ContactSearch {
         }
     }
 
-    /// Takes out of the pairs that could not be moved into one plane those that lie in one all the same.
+    /// Takes out of the pairs that could not be moved into one plane those that lie in one all the same, with every
+    /// face that was left at first.
     void forget_joined() {
         if (contacts_.apart.empty()) return;
         std::set<std::pair<uint32_t, uint32_t>> joined;
         for (const Pair& pair : pairs_)
             if (in_contact(pair)) joined.insert(std::minmax(faces_[pair.first].solid, faces_[pair.second].solid));
+        std::set<std::pair<uint32_t, uint32_t>> planes;  // of each solid
+        for (uint32_t i = 0; i < faces_.size(); ++i)
+            if (plane_[i] != no_plane) planes.insert({faces_[i].solid, plane_[i]});
+        for (const LeftFace& left : left_)
+            if (std::none_of(left.parts.begin(), left.parts.end(), [&](uint32_t part) {
+                    return planes.contains({left.other, contacts_.plane_of(left.solid, part)});
+                }))
+                joined.erase(std::minmax(left.solid, left.other));
         std::erase_if(contacts_.apart, [&](const NearPair& pair) {
-            return joined.count({pair.solids[0], pair.solids[1]}) != 0;
+            return joined.contains({pair.solids[0], pair.solids[1]});
         });
     }
 
@@ -714,6 +730,7 @@ class ContactSearch {
     std::vector<ContactBody> bodies_;
     std::vector<std::vector<FlatFace>> found_;   // of each body
     std::vector<std::vector<uint32_t>> joined_;  // of each body the planes into which it was moved
+    std::vector<LeftFace> left_;
     FaceTree tree_;
     const FaceList& faces_ = tree_.faces;
     mutable std::atomic<size_t> looked_at_{0};  // pairs of boxes in this sweep

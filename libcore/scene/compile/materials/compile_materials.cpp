@@ -28,8 +28,9 @@ template <class Real>
 Transparency transparency_of(const Material<Real>& m, const MaterialDescription& material) {
     const Vec3<Real> passes = m.fresnel != 0 ? m.tint * (m.reflection + m.transmission) : m.filter;
     if (!(largest_component(passes) > 0)) return Transparency::opaque;
-    const bool clear = material.reflection == 0 && material.transmission == 1 && material.tint == dvec3{1};
-    return clear ? Transparency::clear : Transparency::partial;
+    if (material.tint != dvec3{1}) return Transparency::partial;
+    if (material.reflection == 0 && material.transmission == 1) return Transparency::clear;
+    return material.fresnel && local_share(material) == 0 ? Transparency::whole : Transparency::partial;
 }
 
 /// Adds a texture, but for its place among all texels.

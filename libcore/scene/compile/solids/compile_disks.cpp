@@ -9,7 +9,8 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double square_side = 2;  // M: half the side of what stands for a plane, which reaches over the scene
+constexpr double square_side = 2;        // M: half the side of what stands for a plane, which reaches over the scene
+constexpr double plane_radius = 0x1p12;  // M: within which every line meets a plane
 
 /// The axes of a disk's texture: that of u is the scene's x axis, or the y axis for normals near that, turned into the
 /// plane.
@@ -88,11 +89,11 @@ void add_disks(CompiledScene<Real>& scene, const SceneSource& source, const std:
         const Solid& solid = scene.solids[placed.solid];
         const bool endless = placed.is_endless();
         const dvec3 normal = normalized(placed.object->normal);
-        const double height = double(plane.offset);
-        const double reach = horizon * double(scene.extent);
+        const double radius = endless ? plane_radius * double(scene.extent) : placed.radius;
         Disk<Real> disk{};
-        disk.center = Vec3<Real>(endless ? height * dvec3(plane.normal) : placed.center);
-        disk.square = Real(endless ? reach * reach - height * height : placed.radius * placed.radius);
+        disk.center = Vec3<Real>(endless ? double(plane.offset) * dvec3(plane.normal) : placed.center);
+        disk.square = Real(radius * radius);
+        disk.least_slope = endless ? horizon<Real> : Real(2);
         const TextureAxes axes(normal);
         const double unit = endless ? normalization.factor : 2 * placed.radius;
         const int texture = source.materials[solid.material].texture;
@@ -107,6 +108,7 @@ void add_disks(CompiledScene<Real>& scene, const SceneSource& source, const std:
         disk.solid = placed.solid;
         disk.face = solid.first_triangle;
         scene.disks.push_back(disk);
+        scene.disk_planes.push_back(placed.equation);
     }
 }
 

@@ -11,9 +11,6 @@ namespace cistula {
 /// The most disks of a scene, planes too: each query tests them all.
 inline constexpr size_t most_disks = 64;
 
-/// How far from the scene's center planes without end are met, in M.
-inline constexpr double horizon = 0x1p12;
-
 /// The numbers of triangles that a disk takes: those of its square, which no cluster has.
 inline constexpr uint32_t triangles_of_disk = 2;
 

@@ -82,6 +82,11 @@ void find_touching_solids(CompiledScene<Real>& scene, const std::vector<Box>& bo
                 return other != i && near(boxes[i], boxes[other], touching);
             });
     });
+    scene.unseen_faces = std::any_of(scene.solids.begin(), scene.solids.end(), [&](const Solid& solid) {
+        const Material<Real>& m = scene.materials[solid.material];
+        return solid.kind != SolidKind::sheet && m.transparency == Transparency::whole && m.transmission > Real(0) &&
+               m.transmission < Real(1) && (solid.may_touch || m.index == 1);
+    });
 }
 
 template <class Real>

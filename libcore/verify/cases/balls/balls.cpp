@@ -104,6 +104,44 @@ void shells(Stage& stage, Tally& tally) {
         }
 }
 
+/// Bodies of the same glass in a ball, and two halves of a box that overlap or touch, leave nothing to see, however
+/// small the depth; nor do they darken shadows. `tint`: of the glass.
+void same_glass(Stage& stage, Tally& tally, double tint) {
+    MaterialDescription material = glass(1.5, true);
+    material.reflection = 0.1, material.transmission = 0.9, material.tint = glm::dvec3(tint);
+    SceneDescription plain = view();
+    plain.depth = 5;
+    SceneDescription halves = plain;
+    const int number = add_material(plain, material);
+    add_material(halves, material);
+    add_object(plain, sphere({0, 0, 1.2}, 1), number);
+    const Film expected = stage.film(plain);
+    for (int kind = 0; kind < 4; ++kind) {
+        SceneDescription scene = plain;
+        if (kind < 2) add_object(scene, sphere({0.1, 0, 1.2}, 0.7), number);
+        if (kind == 1) add_object(scene, sphere({0.2, 0.1, 1.2}, 0.4), number);
+        if (kind >= 2) add_object(scene, box({-0.3, -0.2, 0.8}, {0.4, 0.5, 1.5}, kind == 3), number);
+        const Film film = stage.film(scene);
+        for_each_pixel(film, [&](size_t pixel, int, int) {
+            tally.place = place_of(0, uint64_t(kind), pixel);
+            bool same = film.pixels[pixel].rays == expected.pixels[pixel].rays;
+            for (int c = 0; c < 3; ++c)
+                same = same && magnitude(radiance(film, pixel, c) - radiance(expected, pixel, c)) <= 16 * stage.unit();
+            tally.expect(same);
+        });
+    }
+    SceneDescription whole = halves;
+    add_object(whole, box({-0.8, -0.6, 0}, {0.9, 0.7, 1.1}), number);
+    const Film expected_box = stage.film(whole);
+    for (const double overlap : {0.25, 0.0})
+        for (const bool triangles : {false, true}) {
+            SceneDescription scene = halves;
+            add_object(scene, box({-0.8, -0.6, 0}, {0.1 + overlap, 0.7, 1.1}, triangles), number);
+            add_object(scene, box({0.1, -0.6, 0}, {0.9, 0.7, 1.1}, triangles), number);
+            expect_same_picture(stage, tally, scene, expected_box, 1 + uint64_t(overlap > 0) + 2 * uint64_t(triangles));
+        }
+}
+
 /// A ball that touches a glass cube that stands on the floor looks as one a hair above it.
 void on_cube(Stage& stage, Tally& tally) {
     const auto scene_at = [&](double height) {
@@ -150,6 +188,10 @@ void add_balls(Cases& cases) {
     cases.images("furnace", "the background's color, at every angle", no_failures("pixels"), furnace);
     cases.images("filled-hole", "the ball without hole and filling", no_failures("pixels"), filled_hole);
     cases.images("shells", "the ball without shells in it", no_failures("pixels"), shells);
+    cases.images("same-glass", "one body, whatever bodies of its glass are in it", no_failures("pixels"),
+                 [](Stage& stage, Tally& tally) { same_glass(stage, tally, 1); });
+    cases.images("broken/tinted-glass", "faces with a tint are seen", must_fail(100, "pixels"),
+                 [](Stage& stage, Tally& tally) { same_glass(stage, tally, 0.999); });
     cases.images("on-a-cube", "the ball a hair above the cube", no_failures("pixels"), on_cube);
     cases.images("sizes", "the ball beside one that is not larger", no_failures("pixels", float_warns), sizes);
 }

@@ -177,6 +177,7 @@ struct FarCameras {
         const double distance = powers[draw.below(7)] * (1 + draw.unit<double>());
         FrameView frame;
         frame.camera.position = on_sphere(draw) * (distance * double(setup.extent()));
+        frame.camera_sides[0].start = frame.camera.position;
         frame.is_far = true;
         const bool at_edge = draw.one_in(2);
         const Vec3<double> inner = in_ball(draw) * double(setup.extent());

@@ -120,12 +120,47 @@ void floor_of_squares(Stage& stage, Tally& tally, double half) {
                               if (depth > 0) return 0.5;
                               if (direction.z >= 0) return 0.25;
                               const dvec3 p = on_floor(from, direction);
-                              if (length(p) > 0x1p12 * 2 * extent) return 0.25;
                               if (length(p) > 0x1p11 * extent) return {};
                               return checker(place, p);
                           });
             if (half > 0) return;
         }
+}
+
+/// The horizon of a floor, from any height, beside the scene too, and in a mirror that stands in the middle, which does
+/// not change on which side of it a line goes. `radius`: of a disk in place of the floor.
+void horizon(Stage& stage, Tally& tally, double radius) {
+    uint64_t number = 0;
+    for (const Place& place : {places[0], places[1], places[4]})
+        for (const double height : {1e-6, 0.01, 3.0, 1e3, 1e6})
+            for (const double aside : {0.0, 5.0, 1e3, 1e6}) {
+                const dvec3 camera(aside, -5, height);
+                SceneDescription scene = view(place, camera);
+                const dvec3 ahead = normalized(aside > 0 && height < 1 ? dvec3(-aside, 5, 0) : dvec3(0, 1, 0));
+                scene.camera.target = place(camera + ahead);
+                scene.camera.field_of_view = height < 0.01 ? 1 : 0.002;
+                const dvec3 along = 0.7 * dvec3(-ahead.y, ahead.x, 0);
+                add_object(scene,
+                           parallelogram(place(-along - dvec3(0, 0, 0.9)), 2 * place.scale * place.turned(along),
+                                         1.8 * place.scale * place.turned({0, 0, 1})),
+                           add_material(scene, paper(dvec3(0), 1)));
+                const int floor = add_material(scene, paper(dvec3(0.75)));
+                DiskObject disk;
+                disk.center = place.center, disk.normal = place.turned({0, 0, 1}), disk.radius = radius * place.scale;
+                add_object(scene, radius > 0 ? disk : place.plane({0, 0, 1}, 0), floor);
+                const double wide = scene.camera.field_of_view / 57.29577951308232 / scene.film.width;
+                const double near = max_or_second(wide, 0x1p-20);
+                expect_pixels(stage, tally, scene, place, number++,
+                              [&](const dvec3& from, const dvec3& direction) -> std::optional<double> {
+                                  const double doubt = -0.05 - length(from) * near;
+                                  const double t = -dot(from, ahead) / dot(direction, ahead);
+                                  const dvec3 mirrored = direction - 2 * dot(direction, ahead) * ahead;
+                                  if (ball_depth(from, direction) > doubt || std::abs(direction.z) < near ||
+                                      ball_depth(from + t * direction, mirrored) > doubt)
+                                      return {};
+                                  return direction.z < 0 ? 0.75 : 0.25;
+                              });
+            }
 }
 
 /// The shadow of the ball, an ellipse, and of a disk beside it.
@@ -225,6 +260,10 @@ void add_planes(Cases& cases) {
                  [](Stage& stage, Tally& tally) { floor_of_squares(stage, tally, 0); });
     cases.images("broken/quad", "a quad in place of a plane has an end", must_fail(1, "pixels"),
                  [](Stage& stage, Tally& tally) { floor_of_squares(stage, tally, 20); });
+    cases.images("horizon", "what is below the camera's height is floor", no_failures("pixels"),
+                 [](Stage& stage, Tally& tally) { horizon(stage, tally, 0); });
+    cases.images("broken/rim", "a disk in place of a plane has an end", must_fail(100, "pixels"),
+                 [](Stage& stage, Tally& tally) { horizon(stage, tally, 0x1p12); });
     cases.images("shadows", "ellipses, of a ball and a disk", no_failures("pixels"), shadows);
     cases.images("mirror", "the ball mirrored in a floor before a wall", no_failures("pixels"), mirror);
     cases.images("as-a-quad", "what stands on a quad as large as the view", no_failures("pixels"), as_a_quad);

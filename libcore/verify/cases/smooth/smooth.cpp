@@ -164,6 +164,39 @@ void under_a_floor(Stage& stage, Tally& tally) {
     }
 }
 
+/// A liquid in a smooth cup looks as one that reaches into the wall, where no face is shared, but for lines that meet
+/// edges. `lean`: by how much its normals differ from the wall's.
+void contact(Stage& stage, Tally& tally, double lean) {
+    for (const bool is_ring : {false, true}) {
+        const TrianglesObject liquid = is_ring ? ring_mesh(16, 8, 0.7, 0.25) : round_mesh(1, one);
+        TrianglesObject leaning = liquid;
+        for (glm::dvec3& n : leaning.normals) n = normalized(normalized(n) + lean * glm::dvec3(0.6, 0, 0.8));
+        const auto film_of = [&](const TrianglesObject& filling, double hole) {
+            TrianglesObject cup = is_ring ? ring_mesh(16, 8, 0.7, 0.3) : moved(liquid, glm::dvec3(0), glm::dvec3(1.2));
+            const auto first = uint32_t(cup.vertices.size());
+            for (size_t i = 0; i < liquid.vertices.size(); ++i) {
+                const glm::dvec3 n = normalized(liquid.normals[i]);
+                cup.vertices.push_back(liquid.vertices[i] - hole * n);
+                cup.normals.push_back(-n);
+            }
+            for (const auto& t : liquid.triangles) cup.triangles.push_back({t[0] + first, t[2] + first, t[1] + first});
+            SceneDescription scene = under_sky(cup, glass(1.5, true));
+            scene.film.width = scene.film.height = 32;
+            scene.depth = 5;
+            add_object(scene, filling, add_material(scene, glass(1.33, true)));
+            return stage.film(scene);
+        };
+        const Film film = film_of(leaning, 0);
+        const Film expected = film_of(liquid, 0.03);
+        size_t differing = 0;
+        for_each_pixel(film, [&](size_t pixel, int, int) {
+            differing += !(magnitude(radiance(film, pixel) - radiance(expected, pixel)) <= 0.01);
+        });
+        tally.place = is_ring;
+        tally.expect(differing <= film.pixels.size() / 100);
+    }
+}
+
 }  // namespace
 }  // namespace smooth
 
@@ -180,6 +213,10 @@ void add_smooth(Cases& cases) {
                  [](Stage& stage, Tally& tally) { terminator(stage, tally, false); });
     cases.images("broken/flat-terminator", "flat faces are not lit as the sphere", must_fail(50, "pixels"),
                  [](Stage& stage, Tally& tally) { terminator(stage, tally, true); });
+    cases.images("contact", "a liquid that reaches into the wall of its cup", no_failures("pictures"),
+                 [](Stage& stage, Tally& tally) { contact(stage, tally, 0); });
+    cases.images("broken/leaning-contact", "faces whose normals disagree are flat", must_fail(2, "pictures"),
+                 [](Stage& stage, Tally& tally) { contact(stage, tally, 0x1p-4); });
     cases.images("under-a-floor", "no light from below a floor", no_failures("pixels"), under_a_floor);
 }
 
