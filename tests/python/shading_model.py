@@ -51,6 +51,7 @@ class Body:
         self.clear = self.kr == 0 and self.kt == 1 and bool(np.all(self.tint == 1))
         self.absorption = self.absorption * (not self.opaque)
         self.closed = "quad" not in o
+        self.whole = self.closed and self.fresnel and self.both > 1 - 1e-12 and bool(np.all(self.tint == 1))
         if "quad" in o:
             self.corners = np.array(o["quad"], float)
             self.normal = unit(np.cross(self.corners[1] - self.corners[0], self.corners[2] - self.corners[0]))
@@ -120,6 +121,15 @@ class Body:
             faces = crosses * ((leave < distance) * 1 + ~inside)
             length = crosses * np.maximum(np.minimum(leave, distance) - enter, 0)
         return (self.kt * self.tint) ** faces[:, None] * np.exp(-self.absorption * length[:, None])
+
+    def span(self, o, d, state):
+        """The t at which lines are inside, from and to."""
+        if not self.closed:
+            return np.full(len(o), np.inf), np.full(len(o), np.inf)
+        enter, leave, _, _ = self.interval(o, d)
+        crosses = (state == INSIDE) | (state == AHEAD) & (enter <= leave) & (leave > 0)
+        enter = np.where(state == INSIDE, -np.inf, np.maximum(enter, 0))
+        return np.where(crosses, enter, np.inf), np.where(crosses, np.maximum(leave, 0), np.inf)
 
     def split(self, d, n, n1, n2):
         """Shares of the mirrored and the transmitted ray, whether that bends, and where to."""
@@ -203,8 +213,23 @@ class Scene:
             adds *= intensity / (np.maximum(r, least)[:, None] ** 2 if least else 1)
             for s, other in enumerate(self.bodies):
                 adds *= other.filtered(p[lit], to, state[lit, s], r, position)
-            light_of[lit] += adds
+            light_of[lit] += adds * self.unseen(p[lit], to, state[lit], r)[:, None]
         return light_of
+
+    def unseen(self, o, d, state, distance):
+        """1 / kt of the faces of whole bodies between equal indices, which do not count."""
+        gain, index = np.ones(len(o)), np.array([b.index for b in self.bodies] + [1.0])
+        whole = [s for s, b in enumerate(self.bodies) if b.whole and 0 < b.kt < 1]
+        spans = [b.span(o, d, state[:, s]) for s, b in enumerate(self.bodies)] if whole else []
+        for s in whole:
+            for t in spans[s]:
+                there = np.stack([np.where((enter < t) & (t < leave), INSIDE, AHEAD) for enter, leave in spans], axis=1)
+                there[:, s] = AHEAD
+                before = index[self.medium(there)]
+                there[:, s] = INSIDE
+                same = (t >= 0) & (t < distance) & (before == index[self.medium(there)])
+                gain[same] /= self.bodies[s].kt
+        return gain
 
     def medium(self, state):
         media = np.array([s for s, b in enumerate(self.bodies) if b.closed and not b.opaque], int)
@@ -236,7 +261,7 @@ class Scene:
             around = self.medium(state[i])
             n1, n2 = index[around], index[self.medium(beyond)]
             passes = b.closed and not b.opaque and around > s
-            passes = passes | (b.clear & (n1 == n2))
+            passes = passes | ((b.clear or b.whole) & (n1 == n2))
             children.append((pixel[i], o[i], d[i], t[i], w[i], level[i], beyond, passes))
             i, beyond, n1, n2 = (a[~passes] for a in (i, beyond, n1, n2))
             p, n, here, wi = o[i] + t[i, None] * d[i], normal[i], d[i], w[i]

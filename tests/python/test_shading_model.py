@@ -43,3 +43,25 @@ def test_renders(source: Path, programs: Path, tmp_path: Path, name: str, sample
     subprocess.run([programs / "render", scene, "-q", "-o", image, "--res", "96x54", "--precision", "double", "--cutoff", "0",
                     "--supersample", str(samples), "--depth", str(depth), "-f", str(frame)], check=True)
     hold_alike(shading_model.render(scene, 96, 54, samples, depth, frame), colors(image))
+
+
+def test_bodies_of_one_glass(programs: Path, tmp_path: Path) -> None:
+    """Whole bodies that overlap one another and one of another index: lines and shadows count faces where the index changes."""
+    def solid(kind: str, center: list, radius: float, material: str) -> dict:
+        return {"solid": kind, "center": center, "radius": radius, "rotate": [10 * radius, 20, 30], "material": material}
+    glass = {"color": 0.4, "reflection": 0.2, "transmission": 0.8, "fresnel": True, "index": 1.5}
+    objects = [{"quad": [[-3, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]], "material": "floor"},
+               solid("cube", [-0.7, 0, 0.8], 0.7, "glass"), solid("octahedron", [-0.5, 0.1, 0.9], 0.6, "glass"),
+               solid("dodecahedron", [0, 0.2, 0.7], 0.5, "glass"), solid("icosahedron", [0.8, 0, 0.7], 0.6, "glass"),
+               solid("cube", [0.9, -0.2, 0.8], 0.3, "glass"), solid("octahedron", [0.6, 0.1, 1], 0.5, "water"),
+               solid("tetrahedron", [1.1, 0.3, 0.9], 0.8, "air")]
+    scene = tmp_path / "glass.json"
+    scene.write_text(json.dumps({
+        "depth": 6, "ambient": 0.2, "background": [0.3, 0.5, 0.7], "camera": {"position": [0.4, -4, 2.4], "target": [0, 0, 0.6]},
+        "lights": [{"position": [2, -2, 5], "color": 0.8}, {"position": [-3, 1, 3], "color": [0.4, 0.3, 0.2]}],
+        "materials": {"floor": {"color": [0.8, 0.7, 0.6], "diffuse": 0.9}, "glass": glass, "water": glass | {"index": 1.33},
+                      "air": glass | {"index": 1}}, "objects": objects}))
+    image = tmp_path / "image.exr"
+    subprocess.run([programs / "render", scene, "-q", "-o", image, "--res", "96x54", "--precision", "double", "--cutoff", "0"],
+                   check=True)
+    hold_alike(shading_model.render(scene, 96, 54, 1, 6), colors(image))
