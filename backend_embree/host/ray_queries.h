@@ -95,7 +95,7 @@ struct LaneQueries {
                 functions.transmittance(&scene, shadows, count, found);
             else
                 for (int k = 0; k < count; ++k) found[k] = single.template transmittance<QueryEffects>(shadows[k]);
-            for (int k = 0; k < count; ++k) shares[of[k]] = Vec3<double>(found[k]);
+            for (int k = 0; k < count; ++k) shares[of[k]] = seen_share(view(), single, shadows[k], found[k]);
         });
     }
 

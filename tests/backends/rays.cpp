@@ -159,7 +159,7 @@ TEST(RayQueries, FloatAndDoubleAgree) {
 TYPED_TEST(RayQueries, TellWhatFramesShow) {
     using Real = TypeParam;
     size_t compared = 0, lights = 0, apart = 0;
-    for (const char* name : {"platonic", "glass", "mesh", "hard/media-meshes"}) {
+    for (const char* name : {"platonic", "glass", "mesh", "hard/media-meshes", "hard/same-glass"}) {
         SCOPED_TRACE(name);
         const SceneDescription description = test::shipped_scene(name);
         const std::shared_ptr<const CompiledScene<Real>> scene = compile_scene<Real>(description);

@@ -104,6 +104,14 @@ CISTULA_HD inline RayAnswer answer_ray(const Intersector& intersector, const Ray
     return answer_of(scene, ray, start, intersector.closest(ray));
 }
 
+/// The share of light that passes along a segment, of which faces that rays pass unseen are to be taken out.
+template <class Real, class Intersector, class Scene>
+CISTULA_HD inline Vec3<double> seen_share(const Scene& scene, const Intersector& intersector,
+                                          const ShadowRay<Real>& shadow, Vec3<Real> arrives) {
+    if (scene.unseen_faces) gain_unseen_faces<QueryEffects>(scene, intersector, shadow, true, arrives);
+    return Vec3<double>(arrives);
+}
+
 /// The share of light that passes along a segment; NaN where that starts inside too many solids.
 template <class Real, class Intersector>
 CISTULA_HD inline Vec3<double> answer_segment(const Intersector& intersector, const RayQuestion& question) {
@@ -112,7 +120,7 @@ CISTULA_HD inline Vec3<double> answer_segment(const Intersector& intersector, co
     ShadowRay<Real> shadow;
     if (!begin_segment(scene, question, nowhere, shadow)) return Vec3<double>(1.0);
     if (!camera_solids(scene, intersector, question.origin, shadow.ray.media)) return Vec3<double>(no_answer);
-    return Vec3<double>(intersector.template transmittance<QueryEffects>(shadow));
+    return seen_share(scene, intersector, shadow, intersector.template transmittance<QueryEffects>(shadow));
 }
 
 }  // namespace cistula
