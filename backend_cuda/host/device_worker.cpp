@@ -126,6 +126,7 @@ void DeviceWorker<Real>::prime(Sampling sampling, int mask) {
     job.block_count = 1;
     job.storage_blocks = 1;
     CISTULA_CUDA_CHECK(cudaMemsetAsync(next_.as<void>(), 0, next_bytes, compute_));
+    CISTULA_CUDA_CHECK(cudaMemsetAsync(job.tally, 0, sizeof(DeviceTally), compute_));
     launch(sampling, mask, path_, upload_.scene(), job, compute_);
     CISTULA_CUDA_CHECK(cudaStreamSynchronize(compute_));
     primed_ |= 1u << kernel;

@@ -87,7 +87,7 @@ class BranchReader {
                 if (replay.crowd.empty()) replay.crowd = names_around(ray, event);
                 break;
             }
-            const size_t after = next_on_line(looks, next, event.last());
+            const size_t after = next_on_line(looks, next, ray, event.last());
             if (after == looks.size()) {
                 absorption.dim(scene_, ray.media, event.hit.t, replay.weight);
                 replay.branch.end = BranchEnd::surface;
@@ -108,11 +108,14 @@ class BranchReader {
         replay.branch.adds = less(replay.trace.end.radiance, replay.trace.begin.radiance);
     }
 
-    /// The query that continues straight from a crossing, if there is one: nothing was shaded there then.
-    static size_t next_on_line(const std::vector<typename Trace::Look>& looks, size_t from,
+    /// The query that continues a ray straight from a crossing, if there is one: nothing was shaded there then.
+    static size_t next_on_line(const std::vector<typename Trace::Look>& looks, size_t from, const Ray<Real>& ray,
                                const Crossing<Real>& last) {
-        while (from < looks.size() && !(looks[from].ray.after.t == last.t && looks[from].ray.after.key == last.key))
-            ++from;
+        const auto continues = [&](const Ray<Real>& next) {
+            return next.after.t == last.t && next.after.key == last.key && next.origin == ray.origin &&
+                   next.direction == ray.direction;
+        };
+        while (from < looks.size() && !continues(looks[from].ray)) ++from;
         return from;
     }
 

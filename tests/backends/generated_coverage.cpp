@@ -213,6 +213,7 @@ class Coverage {
         note(media.size > 1, "camera in several solids");
         media.for_each([&](uint32_t solid, int) { note(is_ball(scene.solids[solid]), "camera in a ball"); });
         note(!scene.normals.empty(), "smooth mesh");
+        note(view.unseen_faces, "faces passed unseen");
         note(ball_scene(view, view) && mask_to_run(scene.effects, settings, frame) == ball_mask, "loop over balls");
         note(fits_constant_scene(view), "plain loop of devices");
     }
@@ -249,7 +250,7 @@ void check_coverage(const std::string& folder) {
               "convex solids apart", "a tree over seen lights", "far from the origin", "smooth mesh", "disk",
               "plane without end", "disk or plane that mirrors", "disk or plane that is seen through",
               "gradient around", "keys around a frame", "keys of a ball", "keys of a solid", "balls that touch",
-              "ball cut by a face", "loop over balls"}},
+              "ball cut by a face"}},
         {8, {"colored highlights", "many primitives", "integer exponent by logarithm", "fresnel without transmission",
              "no light of its own", "unlit", "intensity 0, but seen", "seen lights on edges",
              "falloff of lights on edges", "light on a plane", "light on a corner of planes", "light on a triangle",
@@ -258,7 +259,8 @@ void check_coverage(const std::string& folder) {
              "pinned frame", "pinned bound", "large units", "convex solids only", "clamped texture",
              "box", "truncated-cube", "picture around", "texture on a disk", "texture on a plane", "light in a ball",
              "light on a disk or plane", "camera in a ball", "keys of a disk", "keys of a plane", "balls that overlap",
-             "flat body in a ball", "ball cut by a disk", "ball cut by a plane", "ball on a sheet"}},
+             "flat body in a ball", "loop over balls", "faces passed unseen",
+             "ball cut by a disk", "ball cut by a plane", "ball on a sheet"}},
         {4, {"faces in one place of planes", "faces in one place of both kinds", "lights on edges that do not light",
              "camera in several solids", "a tree over convex solids apart", "small units", "mirrored texture",
              "plain loop of devices", "ball in a ball", "balls in one place", "all corners on a ball", "ball in a flat body",

@@ -138,6 +138,7 @@ class Compiler {
         add_hulls();
         find_touching_solids(scene_, places_.boxes);
         find_isolated_solids(scene_, bodies_.disks);
+        find_unseen_faces(scene_);
         find_crossed_bulges(scene_, source_, places_);
         explain();
         scene_.hashes = FrameHashes(hash_.hex());

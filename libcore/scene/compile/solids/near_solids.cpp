@@ -82,11 +82,6 @@ void find_touching_solids(CompiledScene<Real>& scene, const std::vector<Box>& bo
                 return other != i && near(boxes[i], boxes[other], touching);
             });
     });
-    scene.unseen_faces = std::any_of(scene.solids.begin(), scene.solids.end(), [&](const Solid& solid) {
-        const Material<Real>& m = scene.materials[solid.material];
-        return solid.kind != SolidKind::sheet && m.transparency == Transparency::whole && m.transmission > Real(0) &&
-               m.transmission < Real(1) && (solid.may_touch || m.index == 1);
-    });
 }
 
 template <class Real>
@@ -106,6 +101,16 @@ void find_isolated_solids(CompiledScene<Real>& scene, const std::vector<PlacedDi
 }
 
 template <class Real>
+void find_unseen_faces(CompiledScene<Real>& scene) {
+    scene.unseen_faces = std::any_of(scene.solids.begin(), scene.solids.end(), [&](const Solid& solid) {
+        const Material<Real>& m = scene.materials[solid.material];
+        const bool alone = solid.kind == SolidKind::convex ? solid.isolated : !solid.may_touch;
+        return solid.kind != SolidKind::sheet && m.transparency == Transparency::whole && m.transmission > Real(0) &&
+               m.transmission < Real(1) && (!alone || m.index == 1);
+    });
+}
+
+template <class Real>
 void find_crossed_bulges(CompiledScene<Real>& scene, const SceneSource& source, const SolidPlaces& places) {
     const auto count = static_cast<uint32_t>(scene.solids.size());
     tbb::parallel_for(uint32_t(0), count, [&](uint32_t i) {
@@ -122,6 +127,8 @@ template void find_touching_solids(CompiledScene<float>&, const std::vector<Box>
 template void find_touching_solids(CompiledScene<double>&, const std::vector<Box>&);
 template void find_isolated_solids(CompiledScene<float>&, const std::vector<PlacedDisk>&);
 template void find_isolated_solids(CompiledScene<double>&, const std::vector<PlacedDisk>&);
+template void find_unseen_faces(CompiledScene<float>&);
+template void find_unseen_faces(CompiledScene<double>&);
 template void find_crossed_bulges(CompiledScene<float>&, const SceneSource&, const SolidPlaces&);
 template void find_crossed_bulges(CompiledScene<double>&, const SceneSource&, const SolidPlaces&);
 

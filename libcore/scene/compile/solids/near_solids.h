@@ -18,6 +18,10 @@ void find_touching_solids(CompiledScene<Real>& scene, const std::vector<Box>& bo
 template <class Real>
 void find_isolated_solids(CompiledScene<Real>& scene, const std::vector<PlacedDisk>& disks);
 
+/// Notes whether shadow rays may cross faces that rays pass unseen (shadow.h), once it is known what is isolated.
+template <class Real>
+void find_unseen_faces(CompiledScene<Real>& scene);
+
 /// Notes of which smooth meshes anything else, or another part, may lie within a bulge.
 template <class Real>
 void find_crossed_bulges(CompiledScene<Real>& scene, const SceneSource& source, const SolidPlaces& places);
