@@ -158,6 +158,7 @@ struct DiskCase : CaseOf<Real, 14> {
         in.disk.center = draw.one_in(2) ? Vec3<Real>(Real(0)) : draw.in_cube<Real>(Real(0.5));
         const Real radius = draw.one_in(4) ? Real(0x1p12) : magnitude(draw.scaled<Real>(-10, 0));
         in.disk.square = radius * radius;
+        in.disk.least_slope = radius > Real(1000) ? horizon<Real> : Real(2);
         const bool upright = magnitude(in.plane.normal.x) < Real(0.5);
         in.disk.axes[0] = normalized(cross(
             in.plane.normal, upright ? Vec3<Real>(Real(1), Real(0), Real(0)) : Vec3<Real>(Real(0), Real(1), Real(0))));
