@@ -95,12 +95,6 @@ class SmoothFaceSearch {
         return !normals.empty() && normals[part.number][0] != dvec3(0);
     }
 
-    static Box box_of(const std::array<dvec3, 3>& corners) {
-        Box box;
-        for (const dvec3& corner : corners) box.add(corner);
-        return box;
-    }
-
     /// Whether another part overlaps a smooth triangle without being the same.
     bool spoils(const Part& part, const Part& other) const {
         const double near = corner_tolerance(part, other);

@@ -10,7 +10,7 @@
 namespace cistula {
 
 struct SmoothFaces {
-    std::vector<std::vector<uint32_t>> kept;  // of each solid, ascending; of no solid where none is smooth
+    std::vector<std::vector<uint32_t>> kept;  // of each solid, ascending
     std::string warning;                      // of those that are made flat; empty: there are none
 
     bool keeps(uint32_t solid, uint32_t triangle) const;
