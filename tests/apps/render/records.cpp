@@ -123,21 +123,24 @@ TEST_F(RenderProgram, ProgressThatNobodyReadsChangesNothing) {
 }
 
 TEST_F(RenderProgram, SnapshotsShowWhatIsDoneAndLeaveTheFrameAsItIs) {
-    const Arguments frame{
-        "s.json", "-v", "-o", "f.exr", "--res", "320x192", "--supersample", "5", "--layers", "Z,id,cryptomatte,path"};
-    RunningProgram running(program_, frame, file(""));
-    const auto said = [&](const char* what) { return running.error_so_far().find(what) != std::string::npos; };
-    ASSERT_TRUE(running.wait_until([&] { return said("scene hash"); }, 60));
-    EXPECT_TRUE(running.wait_until(
-        [&] {
-            running.send(SIGUSR1);
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
-            return said("snapshot of frame 0 at ");
-        },
-        60))
-        << running.error_so_far();
-    const ProgramResult result = running.wait();
-    ASSERT_EQ(result.code, 0) << result.error;
+    Arguments frame{"s.json",        "-v", "-o", "f.exr", "--res", "320x192", "--layers", "Z,id,cryptomatte,path",
+                    "--supersample", ""};
+    // Frames of ever more samples, until one takes long enough to be asked for a snapshot.
+    ProgramResult result;
+    for (int samples = 5; samples <= 160 && !exists("f.snapshot.exr"); samples *= 2) {
+        frame.back() = std::to_string(samples);
+        RunningProgram running(program_, frame, file(""));
+        const auto said = [&](const char* what) { return running.error_so_far().find(what) != std::string::npos; };
+        ASSERT_TRUE(running.wait_until([&] { return said("scene hash"); }, 60));
+        running.wait_until(
+            [&] {
+                running.send(SIGUSR1);
+                return said("snapshot of frame 0 at ");
+            },
+            60);
+        result = running.wait();
+        ASSERT_EQ(result.code, 0) << result.error;
+    }
     EXPECT_NE(result.error.find("render: snapshot of frame 0 at "), std::string::npos) << result.error;
     EXPECT_NE(result.error.find(" %: f.snapshot.exr\n"), std::string::npos) << result.error;
 
