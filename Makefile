@@ -15,6 +15,9 @@ NAME  := $(basename $(notdir $(SCENE)))
 setup = $(if $(filter no,$(SETUP)),@true,@cmake/install-packages $(1))
 configure = @cmake/configure $(1) $(2) $(CMAKE_ARGS)
 
+# before each line of ninja: steps that are done, of how many, and the seconds since it began
+export NINJA_STATUS ?= [%f of %t, %e s] 
+
 # which cmake/configure reads: yes compiles all kernels where there is no GPU, too
 CUDA   ?=
 
@@ -27,10 +30,12 @@ help: ## this list
 
 render: ## build the renderer and render SCENE (scenes/platonic.json) to out/
 	$(call setup,packages.txt:renderer)
+	@[ -x $(BUILD)/bin/render ] || echo 'render: compiled once, which takes two to five minutes on two cores; lines count steps and seconds'
 	$(call configure,--renderer $(PRESET))
 	@cmake --build $(BUILD) --target render
 	@mkdir -p out
 	$(BUILD)/bin/render $(SCENE) --backend embree -o out/$(NAME).exr --preview out/$(NAME).png
+	@echo 'The picture is out/$(NAME).png, its values are in out/$(NAME).exr. Next: make render SCENE=scenes/glass.json, or $(BUILD)/bin/render --help'
 
 build: ## build libraries, programs, the Python package and tests
 	$(call setup,packages.txt)
@@ -39,7 +44,7 @@ build: ## build libraries, programs, the Python package and tests
 	@cmake --build $(BUILD)
 
 # $(call run_tests,ARGUMENTS of ctest)
-run_tests = ctest --test-dir $(BUILD) --output-on-failure -j2 $(if $(TEST),-R '$(TEST)') $(1)
+run_tests = tests/run $(BUILD) $(if $(TEST),-R '$(TEST)') $(1)
 
 test: build ## build everything and run the tests; TEST=PATTERN: those whose names match
 	$(call run_tests)

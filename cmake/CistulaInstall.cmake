@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 # Headers: the shading library, whole; of the others those that cistula.h lists, which are public, and what they include, which is
-# internal. tests/package compiles each alone, as another project sees it.
+# internal. tests/package compiles them as another project sees them.
 function(cistula_add_header header)
     if(header IN_LIST _headers OR header MATCHES "^cistula/")
         return()

@@ -32,7 +32,7 @@ made() {
     found=$(PATH=$tree/bin:$PATH make "$@" SETUP=no 2>/dev/null | sed -n 's/^configured: --preset //p' || true)
     expect "$expected" "$found" "make $*"
 }
-alone='-DCISTULA_WITH_OIIO=OFF -DCISTULA_BUILD_TESTS=OFF -DCISTULA_BUILD_BENCH=OFF'
+alone='-DCISTULA_THIS_MACHINE=ON -DCISTULA_WITH_OIIO=OFF -DCISTULA_BUILD_TESTS=OFF -DCISTULA_BUILD_BENCH=OFF'
 made "release $alone -DCISTULA_WITH_CUDA=OFF" render
 made '' render
 made "release --fresh $alone -DCISTULA_WITH_CUDA=ON" render CUDA=yes

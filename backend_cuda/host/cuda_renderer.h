@@ -1,4 +1,5 @@
-// The GPU backend: libcore's traversal and shading on NVIDIA GPUs. It never falls back to the CPU.
+// The GPU backend: libcore's traversal and shading on NVIDIA GPUs. It never falls back to the CPU. In builds without it, functions of
+// these names throw Error (device), which says so (sequence/without_cuda.cpp).
 #pragma once
 
 #include <cstddef>
@@ -10,6 +11,9 @@
 #include "scene/compile/compiled_scene.h"
 
 namespace cistula {
+
+/// Whether this build has the CUDA backend, independent of GPUs in this machine.
+bool has_cuda_backend();
 
 /// A GPU with the driver's number. `obstacle` is empty if this build's kernels run on it, else it says why not.
 struct CudaDevice {

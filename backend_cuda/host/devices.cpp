@@ -29,6 +29,10 @@ bool kernels_run_on_capability(int capability) {
 
 }  // namespace
 
+bool has_cuda_backend() {
+    return true;
+}
+
 std::vector<CudaDevice> list_cuda_devices() {
     if (!CISTULA_EVERY_KERNEL)
         throw Error(ErrorKind::device, "this build has one kernel of many, to see that it compiles, and uses no GPU",

@@ -22,4 +22,10 @@ struct TileFunctions {
 
 extern const TileFunctions cistula_float_tiles_avx2, cistula_double_tiles_avx2;
 extern const TileFunctions cistula_float_tiles_avx512, cistula_double_tiles_avx512;
+
+/// The copies of one precision that this build has; null are those that it has not.
+struct TileCopies {
+    const TileFunctions *avx512, *avx2;
+};
+extern const TileCopies cistula_float_tiles, cistula_double_tiles;
 }

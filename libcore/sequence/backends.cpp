@@ -23,13 +23,6 @@ std::string describe(const CudaDevice& device) {
     throw Error(ErrorKind::device, problem, remedy).of("device", value);
 }
 
-#if !CISTULA_HAS_CUDA
-[[noreturn]] void fail_without_cuda() {
-    throw Error(ErrorKind::device, "this build has no CUDA backend", "`backend` embree renders on the CPU")
-        .of("backend", "cuda");
-}
-#endif
-
 }  // namespace
 
 DeviceChoice parse_devices(const std::string& text, Backend backend) {
@@ -89,12 +82,6 @@ std::string list_devices_text(const std::vector<CudaDevice>& devices) {
     return text;
 }
 
-#if CISTULA_HAS_CUDA
-
-bool has_cuda_backend() {
-    return true;
-}
-
 ChosenDevices choose_devices(Backend backend, const DeviceChoice& choice) {
     ChosenDevices chosen;
     chosen.options.devices.clear();
@@ -109,6 +96,7 @@ ChosenDevices choose_devices(Backend backend, const DeviceChoice& choice) {
 }
 
 std::string list_devices_text() {
+    if (!has_cuda_backend()) return "no GPU: this build has no CUDA backend\n";
     try {
         return list_devices_text(list_cuda_devices());
     } catch (const Error& error) {
@@ -122,32 +110,6 @@ std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const C
     if (backend == Backend::cuda) return make_cuda_renderer<Real>(std::move(scene), options);
     return make_embree_renderer<Real>(std::move(scene));
 }
-
-#else
-
-bool has_cuda_backend() {
-    return false;
-}
-
-ChosenDevices choose_devices(Backend backend, const DeviceChoice&) {
-    if (backend == Backend::cuda) fail_without_cuda();
-    ChosenDevices chosen;
-    chosen.options.devices.clear();
-    return chosen;
-}
-
-std::string list_devices_text() {
-    return "no GPU: this build has no CUDA backend\n";
-}
-
-template <class Real>
-std::unique_ptr<Renderer> make_renderer(Backend backend, std::shared_ptr<const CompiledScene<Real>> scene,
-                                        const CudaOptions&) {
-    if (backend == Backend::cuda) fail_without_cuda();
-    return make_embree_renderer<Real>(std::move(scene));
-}
-
-#endif
 
 template std::unique_ptr<Renderer> make_renderer<float>(Backend, std::shared_ptr<const CompiledScene<float>>,
                                                         const CudaOptions&);

@@ -62,7 +62,4 @@ std::unique_ptr<Renderer> make_renderer(Backend backend, const Scene& scene, con
 std::string describe_flags(uint32_t flags, Renderer& renderer, const SceneDescription& scene, Precision precision,
                            const CameraFrame& camera, FrameSettings settings);
 
-/// Whether this build has the CUDA backend, independent of GPUs in this machine.
-bool has_cuda_backend();
-
 }  // namespace cistula

@@ -119,7 +119,7 @@ std::vector<Met> met_by_line(const Row& row, const SceneDescription& scene) {
     PixelRecord record{};
     uint32_t flags = 0;
     PixelSums<Real> sums(frame.tree, view, record, flags);
-    NextSurface<Real, E, Brute> line(view, brute, frame.tree.depth, sums);
+    NextSurface<Real, E, Brute, SumsOf<Real, E>> line(view, brute, frame.tree.depth, sums);
     Branch<Real> branch;
     double distance;
     const dvec3 direction = normalized(scene.camera.target - scene.camera.position);

@@ -128,7 +128,7 @@ CISTULA_NOINLINE void trace_single(const LaneScene<Real>& scene, const Intersect
                                    Branch<Real>& branch, SumsOf<Real, E>& sums, PixelRays& rays, Stack& stack,
                                    const First& first) {
     const SceneView<Real>& view = scene;
-    find_start_plane<E>(view, branch.ray);
+    find_start_plane<OnlyEffects<E>>(view, branch.ray);
     RayTree<Real, E, Intersector, Stack>(view, intersector, depth, sums, rays, stack).trace_branch(branch, first);
 }
 

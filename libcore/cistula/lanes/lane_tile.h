@@ -86,8 +86,8 @@ class LaneTile {
                 sums.count(active);
             }
             if constexpr (by_sample) hash.begin(largest_component(branch.weight) >= least_weight(), adaptive_);
-            find_start_plane<E>(scene_, branch.ray);
-            if (branch.depth != 0) start_near<E>(scene_, branch.ray);
+            find_start_plane<OnlyEffects<E>>(scene_, branch.ray);
+            if (branch.depth != 0) start_near<OnlyEffects<E>>(scene_, branch.ray);
             if constexpr (!E::has(effect_insides)) branch.ray.media = Media();
             if (scene_.may_stray()) kept = branch;
             const Mask single = tree.follow(branch, active, first);
@@ -251,7 +251,7 @@ class LaneTile {
             if (!primary_ray(scene_, frame_, direction, ray, start)) {
                 SumsOf<T, E> sums(frame_.tree, scene_, *pixel.record, flags);
                 if constexpr (E::has(fills_layers)) sums.divide(frame_.layers, pixel.layers, scene_.light_groups);
-                sums.add(background_radiance<E>(scene_, Vec3<T>(direction)), LightSource::background);
+                sums.add(background_radiance<OnlyEffects<E>>(scene_, Vec3<T>(direction)), LightSource::background);
                 ++pixel.rays;
                 continue;
             }

@@ -57,6 +57,11 @@ struct Effects {
     static constexpr bool triangles = has(effect_triangles) || !has(effect_solids | effect_spheres);
 };
 
+/// The effects of a mask without what only a tree of rays keeps. What the tree calls is compiled for these, once for all
+/// masks that differ in a budget or layers.
+template <class E>
+using OnlyEffects = Effects<E::mask & all_effects>;
+
 /// Path throughput type: one value per channel, or a single one where no effect treats channels differently.
 template <class Real, class E>
 using Throughput = std::conditional_t<E::has(effect_tint | effect_absorption), Vec3<Real>, Real>;

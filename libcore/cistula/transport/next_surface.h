@@ -7,7 +7,6 @@
 #include "cistula/shading/interface.h"
 #include "cistula/shading/surface_event.h"
 #include "cistula/transport/branch.h"
-#include "cistula/transport/layered_sums.h"
 
 namespace cistula {
 
@@ -19,14 +18,13 @@ inline constexpr int largest_crossings = 1 << 20;
 template <class E>
 inline constexpr bool lines_go_on = E::has(effect_transmission) && !E::has(effect_refraction);
 
-/// Finds the surfaces that the branches of a tree meet.
-template <class Real, class E, class Intersector>
+/// Finds the surfaces that the branches of a tree meet. Sums: where the light of what they pass and end at is added.
+template <class Real, class E, class Intersector, class Sums>
 class NextSurface {
   public:
     using Media = typename Intersector::Media;
     using Scene = typename Intersector::Scene;
     using Entry = BranchOf<Real, E, Media>;
-    using Sums = SumsOf<Real, E>;
 
     /// `depth`: maximum number of surfaces on a path.
     CISTULA_INLINE NextSurface(const Scene& scene, const Intersector& intersector, int depth, Sums& sums)

@@ -62,6 +62,7 @@ class RayTree {
     using Scene = typename Intersector::Scene;
     using Weight = Throughput<Real, E>;
     using Entry = BranchOf<Real, E, Media>;
+    using Only = OnlyEffects<E>;
 
     /// `depth`: maximum number of surfaces on a path.
     CISTULA_INLINE RayTree(const Scene& scene, const Intersector& intersector, int depth, Sums& sums, Rays& rays,
@@ -90,7 +91,7 @@ class RayTree {
             SurfaceEvent<Real, Media> event;
             VisibleLightHit<Real> light;
             if (line_.find(branch, event, light)) {
-                const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, event.hit);
+                const Surface<Real> s = surface_at<Real, Only>(scene_, branch.ray, event.hit);
                 if (at_first) first.surface(event.hit, s);
                 shade(branch, true, event, s);
             } else if constexpr (E::has(effect_visible_lights)) {
@@ -116,7 +117,7 @@ class RayTree {
                 SurfaceEvent<Real, Media> event;
                 VisibleLightHit<Real> light;
                 if (line_.find(branch, event, light)) {
-                    const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, event.hit);
+                    const Surface<Real> s = surface_at<Real, Only>(scene_, branch.ray, event.hit);
                     if (at_first) first.surface(event.hit, s);
                     leave(branch, true, event, s);
                     waits = material_of(scene_, s).local > Real(0);
@@ -148,7 +149,7 @@ class RayTree {
             SurfaceEvent<Real, Media> event;
             VisibleLightHit<Real> light;
             if (line_.find(branch, event, light)) {
-                const Surface<Real> s = surface_at<Real, E>(scene_, branch.ray, event.hit);
+                const Surface<Real> s = surface_at<Real, Only>(scene_, branch.ray, event.hit);
                 if (at_first) first.surface(event.hit, s);
                 shade(branch, true, event, s);
             } else if (at_first && light.found()) {
@@ -166,16 +167,16 @@ class RayTree {
         VisibleLightHit<Real> light;
         MaskOf<Real> single = false;
         MaskOf<Real> met = line_.find(branch, active, event, light, single);
-        const MaskOf<Real> among_meshes = meshes_at_starts<E>(scene_, branch.ray, event.hit, met);
+        const MaskOf<Real> among_meshes = meshes_at_starts<Only>(scene_, branch.ray, event.hit, met);
         single |= among_meshes;
         met = met & !among_meshes;
         if constexpr (E::has(effect_visible_lights))
             if (branch.depth == 0) first.light(scene_, light, branch.ray, active & light.found());
         if (!any(met)) return single;
         Surface<Real> s;
-        surfaces_at<E>(scene_, branch.ray, event.hit, met, s);
+        surfaces_at<Only>(scene_, branch.ray, event.hit, met, s);
         if (branch.depth == 0) first.surface(event.hit, s, met);
-        correct_starts<E>(scene_, branch.ray, event, s.normal, false, met, s.viewer_side, s.viewer_media);
+        correct_starts<Only>(scene_, branch.ray, event, s.normal, false, met, s.viewer_side, s.viewer_media);
         shade(branch, met, event, s);
         return single;
     }
@@ -193,8 +194,8 @@ class RayTree {
                         return false;
                     }
             }
-            find_start_plane<E>(scene_, branch.ray);
-            start_near<E>(scene_, branch.ray);
+            find_start_plane<Only>(scene_, branch.ray);
+            start_near<Only>(scene_, branch.ray);
             // All that comes from one of the first surface's children is followed before the other.
             if constexpr (E::has(fills_layers))
                 if (branch.depth == 1) sums_.enter(branch.mirrored);
@@ -223,8 +224,8 @@ class RayTree {
         const Real local = material_of(scene_, s).local;
         const MaskOf<Real> lit = active & (local > Real(0));
         if (any(lit))
-            add_local_light<Real, E>(scene_, intersector_, branch.ray, event, s, branch.weight * local, sums_, rays_,
-                                     LightObserver(), lit);
+            add_local_light<Real, Only>(scene_, intersector_, branch.ray, event, s, branch.weight * local, sums_, rays_,
+                                        LightObserver(), lit);
     }
 
     /// Pushes the heavier of the branch's children and then the lighter, which is followed next.
@@ -232,8 +233,8 @@ class RayTree {
                                 const Surface<Real>& s) {
         const MaskOf<Real> sheet = is_kind(event.hit.key, CrossingKind::sheet);
         const InterfaceSplit<Real, Weight> split =
-            split_at<Real, E>(scene_, material_of(scene_, s), branch.ray.direction, s.shading, branch.ray.media,
-                              event.beyond, sheet, s.normal, s.smooth);
+            split_at<Real, Only>(scene_, material_of(scene_, s), branch.ray.direction, s.shading, branch.ray.media,
+                                 event.beyond, sheet, s.normal, s.smooth);
         const Weight mirrored = branch.weight * split.reflection;
         const Weight through = branch.weight * split.filter;
         // Sums over channels, so that the lighter child has at most half the weight of its parent.
@@ -278,7 +279,8 @@ class RayTree {
     CISTULA_INLINE Entry mirrored_child(const Entry& parent, const SurfaceEvent<Real, Media>& event,
                                         const Surface<Real>& s, const Weight& weight) {
         Entry child = parent.child(weight, true);
-        child.ray = spawned(s.viewer_side, mirrored_way<E, Media>(s, parent.ray.direction), event.hit, s.viewer_media);
+        child.ray =
+            spawned(s.viewer_side, mirrored_way<Only, Media>(s, parent.ray.direction), event.hit, s.viewer_media);
         return child;
     }
     CISTULA_INLINE Entry transmitted_child(const Entry& parent, const SurfaceEvent<Real, Media>& event,
@@ -286,14 +288,14 @@ class RayTree {
                                            const Weight& weight, const MaskOf<Real>& active) {
         Entry child = parent.child(weight, false);
         child.ray = parent.ray;
-        if constexpr (lines_go_on<E>) child.no_light_ahead = parent.no_light_ahead;
+        if constexpr (lines_go_on<Only>) child.no_light_ahead = parent.no_light_ahead;
         line_.pass(child.ray, event, true);
         if constexpr (E::has(effect_refraction)) {
             const MaskOf<Real> bends = active & split.bends;
             if (any(bends)) {
-                Vec3<Real> start = far_side<E>(scene_, event.hit, bends, s.point);
+                Vec3<Real> start = far_side<Only>(scene_, event.hit, bends, s.point);
                 Media media = event.beyond;
-                correct_starts<E>(scene_, parent.ray, event, s.normal, true, bends, start, media);
+                correct_starts<Only>(scene_, parent.ray, event, s.normal, true, bends, start, media);
                 child.ray.take_where(bends, spawned(start, split.through, event.hit, media));
             }
         }
@@ -308,15 +310,16 @@ class RayTree {
         child.weight = weight;
         child.mirrored = !goes_through;
         if (!goes_through) {
-            spawn(child.ray, s.viewer_side, mirrored_way<E, Media>(s, parent.ray.direction), event.hit,
+            spawn(child.ray, s.viewer_side, mirrored_way<Only, Media>(s, parent.ray.direction), event.hit,
                   parent.ray.media);
             correct_start(child.ray, parent.ray, event, s, false);
         } else if (split.bends) {
-            spawn(child.ray, far_side<E>(scene_, event.hit, s.point, s.normal), split.through, event.hit, event.beyond);
+            spawn(child.ray, far_side<Only>(scene_, event.hit, s.point, s.normal), split.through, event.hit,
+                  event.beyond);
             correct_start(child.ray, parent.ray, event, s, true);
         } else {
             child.ray = parent.ray;
-            if constexpr (lines_go_on<E>) child.no_light_ahead = parent.no_light_ahead;
+            if constexpr (lines_go_on<Only>) child.no_light_ahead = parent.no_light_ahead;
             Absorption<false> later;  // the child starts its own absorption
             line_.pass(child.ray, event, later);
         }
@@ -327,19 +330,19 @@ class RayTree {
     CISTULA_INLINE void correct_start(Ray<Real, Media>& ray, const Ray<Real, Media>& parent,
                                       const SurfaceEvent<Real, Media>& event, const Surface<Real>& s,
                                       bool beyond) const {
-        if constexpr (meets_contacts<E, Media>)
-            if (starts_at_contact<E>(scene_, event) &&
+        if constexpr (meets_contacts<Only, Media>)
+            if (starts_at_contact<Only>(scene_, event) &&
                 start_at_contact(scene_, parent, event, s.normal, beyond, ray.origin, ray.media)) {
-                find_start_plane<E>(scene_, ray);
+                find_start_plane<Only>(scene_, ray);
                 count_meshes(scene_, intersector_, ray);
             }
-        if constexpr (meets_balls<E, Scene>)
+        if constexpr (meets_balls<Only, Scene>)
             ball_start(scene_, parent, event.hit, ray.origin).begin(scene_, intersector_, ray);
     }
 
     const Scene& scene_;
     const Intersector& intersector_;
-    NextSurface<Real, E, Intersector> line_;
+    NextSurface<Real, Only, Intersector, Sums> line_;
     const int depth_;
     Sums& sums_;
     Rays& rays_;

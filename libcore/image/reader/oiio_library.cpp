@@ -9,7 +9,6 @@
 #include "base/machine.h"
 
 namespace cistula {
-#ifdef CISTULA_OIIO_MODULE
 namespace {
 
 /// Bytes of address space that the module and its libraries may take while they are loaded. With OpenImageIO 2.4 of
@@ -33,7 +32,12 @@ class KeptFloatingPoint {
 const OiioModule* module_in(const std::filesystem::path& directory, const std::string& users) {
     if (address_space_left() < module_address_space) throw std::bad_alloc();
     const KeptFloatingPoint kept;
-    void* const library = dlopen((directory / CISTULA_OIIO_MODULE).c_str(), RTLD_LAZY | RTLD_LOCAL);
+    const std::filesystem::path file = directory / CISTULA_OIIO_MODULE;
+    if (std::error_code unknown; !std::filesystem::exists(file, unknown))
+        throw std::runtime_error(users + " need the module " CISTULA_OIIO_MODULE ", which is not in " +
+                                 directory.string() +
+                                 "; builds with OpenImageIO have it: `make build` installs and uses that");
+    void* const library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
     void* const entry = library ? dlsym(library, oiio_module_entry) : nullptr;
     if (entry) return reinterpret_cast<OiioModuleEntry>(entry)();
     const char* const text = dlerror();
@@ -47,11 +51,5 @@ const OiioModule& load_oiio(const std::filesystem::path& directory, const std::s
     static const OiioModule* const module = module_in(directory, users);
     return *module;
 }
-#else
-const OiioModule& load_oiio(const std::filesystem::path&, const std::string& users) {
-    throw std::runtime_error("this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF), which " + users +
-                             " need; `make build` installs it (Debian: libopenimageio-dev) and builds with it");
-}
-#endif
 
 }  // namespace cistula

@@ -31,7 +31,7 @@ std::string color_json(const glm::dvec3& c) {
     return parts[0] == parts[1] && parts[1] == parts[2] ? parts[0] : fmt::format("[{}]", fmt::join(parts, ","));
 }
 
-std::string light_list(const PixelSurface& s, const Film& film) {
+std::string lights_json(const PixelSurface& s, const Film& film) {
     std::vector<std::string> list;
     int shadows = 0;  // of which four are told
     for (const LightContribution& light : s.lights)
@@ -54,7 +54,7 @@ std::string ray(const PixelBranch& b, int parent, const Film& film, const glm::d
     std::string text =
         fmt::format("[{},{},{},{},{},{},{}", parent, static_cast<int>(b.kind), static_cast<int>(b.end),
                     color_json(b.weight), color_json(radiance_of(met ? b.surface.ambient_adds : b.adds, film)),
-                    color_json(radiance_of(b.ledger, film)), met ? light_list(b.surface, film) : "[]");
+                    color_json(radiance_of(b.ledger, film)), met ? lights_json(b.surface, film) : "[]");
     if (b.end <= BranchEnd::background) {
         const glm::dvec3 at = b.end == BranchEnd::background ? b.direction : b.origin + b.direction * b.distance - eye;
         text += fmt::format(",[{:.4g},{:.4g},{:.4g}]", at.x, at.y, at.z);

@@ -41,7 +41,7 @@ bool is_in_plane(const std::array<dvec3, 3>& corner, const dvec3& p, double tole
     return incident_ratio * size >= longest && magnitude(dot(normal, p - corner[0])) <= tolerance * size;
 }
 
-Box box_of(const TreeNode& node, int side) {
+Box box_at(const TreeNode& node, int side) {
     Box box;
     for (int axis = 0; axis < 3; ++axis) {
         box.low[axis] = static_cast<double>(node.low[side][axis]);
@@ -70,7 +70,7 @@ double least_distance(const Tree& tree, const dvec3& p, const Distance& of_item)
         Waiting children[2];
         size_t count = 0;
         for (int side = 0; side < 2; ++side) {
-            const Box box = box_of(node, side);
+            const Box box = box_at(node, side);
             if (box.empty()) continue;
             if (node.child[side] >= 0) {
                 children[count++] = {node.child[side], distance_to_box(box, p)};
@@ -163,7 +163,7 @@ std::vector<LightDistance> light_distances(const std::vector<NormalizedLight>& l
     if (tree.nodes.empty()) return distances;
     Box around;
     for (int side = 0; side < 2; ++side)
-        if (const Box box = box_of(tree.nodes[0], side); !box.empty()) around.add(box.low), around.add(box.high);
+        if (const Box box = box_at(tree.nodes[0], side); !box.empty()) around.add(box.low), around.add(box.high);
     for (uint32_t i = 0; i < lights.size(); ++i) {
         const dvec3& p = lights[i].position;
         if (!is_near(lights[i], distance_to_box(around, p), extent)) continue;

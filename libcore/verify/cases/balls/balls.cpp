@@ -54,7 +54,7 @@ SceneDescription view(double unit = 1) {
 /// every angle.
 void furnace(Stage& stage, Tally& tally) {
     SceneDescription scene = empty_scene();
-    scene.film.width = scene.film.height = 64;
+    scene.film.width = scene.film.height = stage.quick ? 32 : 64;  // every pixel has a tree of thousands of rays
     scene.depth = 40;
     scene.background = glm::dvec3(1);
     scene.camera.position = {0, -4, 0};

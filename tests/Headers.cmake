@@ -1,0 +1,51 @@
+# Every header compiles twice, and all of the shading library in one source in nvcc, for the device alone. Where sources are compiled
+# one by one (preset clang, which `make check-all` runs before a release), each compiles alone; elsewhere one source has them all. A
+# header that does not breaks the build of the tests.
+
+# cistula_headers(TARGET HEADER...): an object library with one source a header, or one of them all.
+function(cistula_headers target)
+    set(sources "")
+    set(all "")
+    foreach(header IN LISTS ARGN)
+        string(REPLACE "/" "_" name "${header}")
+        set(source "${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.cpp")
+        set(twice "#include \"${header}\"\n#include \"${header}\"\n")
+        string(APPEND all "${twice}")
+        if(NOT CMAKE_UNITY_BUILD)
+            file(CONFIGURE OUTPUT "${source}" CONTENT "${twice}")
+            list(APPEND sources "${source}")
+        endif()
+    endforeach()
+    if(CMAKE_UNITY_BUILD)
+        set(sources "${CMAKE_CURRENT_BINARY_DIR}/headers/${target}.cpp")
+        file(CONFIGURE OUTPUT "${sources}" CONTENT "${all}")
+    endif()
+    add_library(${target} OBJECT ${sources})
+    set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O0>)
+    target_link_libraries(${target} PRIVATE cistula cistula_warnings)
+endfunction()
+
+file(GLOB_RECURSE core_headers RELATIVE "${PROJECT_SOURCE_DIR}/libcore" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/libcore/cistula/*.h")
+list(REMOVE_ITEM core_headers cistula/lanes/register_avx512.h)  # for one instruction set; lanes.h includes it there
+cistula_headers(core_headers ${core_headers})
+if(TARGET cistula_verify AND NOT CMAKE_UNITY_BUILD)
+    set(scene_headers cistula.h)
+    foreach(folder base image render scene sequence compare)
+        file(GLOB_RECURSE headers RELATIVE "${PROJECT_SOURCE_DIR}/libcore" CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/libcore/${folder}/*.h")
+        list(APPEND scene_headers ${headers})
+    endforeach()
+    cistula_headers(scene_headers ${scene_headers})
+    target_link_libraries(scene_headers PRIVATE
+        cistula_compare embree TBB::tbb OpenEXR::OpenEXR fmt::fmt nlohmann_json::nlohmann_json)
+endif()
+if(CISTULA_CUDA)
+    list(FILTER core_headers EXCLUDE REGEX "^cistula/lanes/")  # for the host's registers
+    list(TRANSFORM core_headers REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
+    list(JOIN includes "" includes)
+    set(source "${CMAKE_CURRENT_BINARY_DIR}/headers/all.cu")
+    file(CONFIGURE OUTPUT "${source}" CONTENT "${includes}${includes}" @ONLY)
+    add_library(core_headers_cuda OBJECT "${source}")
+    set_target_properties(core_headers_cuda PROPERTIES CUDA_PTX_COMPILATION ON CUDA_ARCHITECTURES 75-virtual)
+    target_link_libraries(core_headers_cuda PRIVATE cistula cistula_warnings)
+endif()
