@@ -138,6 +138,9 @@ check() {
         fail 'libm differs between systems: use elementary.h and trigonometry.h of cistula/numerics'
     code 'glm::(refract|reflect|normalize|dot|cross|length|distance|mix|clamp|min|max|inversesqrt|mod|fract)[ \t]*[(]' "${core[@]}" |
         fail "of GLM only types and exact operations: products that round are spelled out in cistula/numerics/vec.h"
+    # A local function hides that of vec.h, and where sources are compiled together its neighbours then call GLM's.
+    code '^[A-Za-z][^=;]*[ *&](cross|dot|length|normalized|along)[(]' "${below[@]}" "${above[@]}" "${embree[@]}" "${cuda[@]}" "${apps[@]}" "${testing[@]}" tests/**/*.{h,cpp} |
+        fail 'cross, dot, length, normalized and along are those of cistula/numerics/vec.h: give a local function another name'
     code 'std::f?(min|max)[ \t]*[(<]' "${core[@]}" |
         fail 'library forms of min and max differ on NaN: use min_or_second and max_or_second of cistula/numerics/real.h'
 
@@ -219,6 +222,7 @@ all_rules() {
     breaks apps/render/a.h '#ifdef __CUDACC__'
     breaks libcore/cistula/model/a.h 'inline float f(float x) { return std::sin(x); }'
     breaks libcore/base/a.cpp 'double f(double x) { return std::pow(x, 2.4); }'
+    breaks libcore/render/frame/a.cpp 'double cross(double ax, double ay, double bx, double by) {'
     breaks libcore/cistula/model/a.h 'auto f = glm::refract(d, n, eta);'
     breaks libcore/cistula/model/a.h 'float f(float x) { return std::max(x, 0.0f); }'
     breaks cmake/a.cmake 'add_compile_options(-ffast-math)'

@@ -1,5 +1,5 @@
-// The GPU backend: libcore's traversal and shading on NVIDIA GPUs. It never falls back to the CPU. In builds without it, functions of
-// these names throw Error (device), which says so (sequence/without_cuda.cpp).
+// The GPU backend: libcore's traversal and shading on NVIDIA GPUs. It never falls back to the CPU. In builds without
+// it, functions of these names throw Error (device), which says so (sequence/without_cuda.cpp).
 #pragma once
 
 #include <cstddef>

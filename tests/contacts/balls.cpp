@@ -5,6 +5,7 @@
 
 #include "cistula/traversal/bvh.h"
 #include "testing/support/contacts/contact_walk.h"
+#include "testing/support/intersectors.h"
 
 namespace cistula {
 namespace {
@@ -501,9 +502,9 @@ size_t walk_kind(const BallKind& kind, Sheet sheet, bool afar = false) {
         for (int i = 0; i < 2; ++i) add_light(ideal.scene, random.direction() * (afar && i == 0 ? 350 : 3.5));
         const auto compiled = compile<Real>(ideal.scene, turn % 2 == 0);
         if (turn % 2 == 0)
-            walk_balls<Real, BvhIntersector<Real>>(ideal, compiled->view(), random, sum);
+            walk_balls<Real, test::Bvh<Real>>(ideal, compiled->view(), random, sum);
         else
-            walk_balls<Real, BruteIntersector<Real>>(ideal, compiled->view(), random, sum);
+            walk_balls<Real, test::Brute<Real>>(ideal, compiled->view(), random, sum);
     }
     std::printf(
         "%-6s %-6s %-22s lines %7zu shadows %7zu | missed %zu stays %zu solid %zu passed %zu off %zu again %zu "

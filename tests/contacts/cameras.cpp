@@ -7,6 +7,7 @@
 #include "render/frame/frame_view.h"
 #include "scene/description/camera_path.h"
 #include "testing/support/contacts/ideal_contact.h"
+#include "testing/support/intersectors.h"
 
 namespace cistula {
 namespace {
@@ -57,15 +58,15 @@ TYPED_TEST(CamerasAtContacts, RaysStartWhereTheyGo) {
                 contact.scene.camera.target = contact.scene.camera.position + random.direction();
                 const auto compiled = compile_scene<Real>(contact.scene);
                 const SceneView<Real> view = compiled->view();
-                const BruteIntersector<Real> brute{view};
+                const test::Brute<Real> brute{view};
                 FrameSettings settings;
                 settings.set_size(64, 64);
                 FrameView frame = frame_view(*compiled, camera_at(contact.scene.camera, 0), settings);
                 EXPECT_EQ(frame.camera_planes, place.planes) << place.name;
                 ASSERT_TRUE(find_camera_solids(view, brute, frame));
                 ContactCounts counts;
-                const test::CheckedIntersector<Real, BruteIntersector<Real>> checked(*compiled, contact.bodies, brute,
-                                                                                     counts);
+                const test::CheckedIntersector<Real, test::Brute<Real>> checked(*compiled, contact.bodies, brute,
+                                                                                counts);
                 for (int i = 0; i < 200; ++i, ++rays) {
                     Ray<Real> ray;
                     double start;

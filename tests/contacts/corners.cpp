@@ -1,6 +1,7 @@
 // Lines into the corner of a pane and a floor, beside a cube that stands on the one and at the other: each meets the
 // pane once, whichever of the two comes first (docs/rules.md, 11, line 11).
 #include "testing/support/contacts/contact_walk.h"
+#include "testing/support/intersectors.h"
 
 namespace cistula {
 namespace {
@@ -23,10 +24,10 @@ struct CornerCounter {
         at_floor += hit.found() && key_solid(hit.key) == floor;
         return hit;
     }
-    Hit<Real> closest(const Ray<Real>& ray) const { return BruteIntersector<Real>{scene}.closest(ray); }
+    Hit<Real> closest(const Ray<Real>& ray) const { return test::Brute<Real>{scene}.closest(ray); }
     template <class E>
     Throughput<Real, E> transmittance(const ShadowRay<Real>& shadow) const {
-        return BruteIntersector<Real>{scene}.template transmittance<E>(shadow);
+        return test::Brute<Real>{scene}.template transmittance<E>(shadow);
     }
 };
 

@@ -8,6 +8,7 @@
 #include "cistula/transport/next_surface.h"
 #include "render/frame/frame_view.h"
 #include "testing/support/contacts/ideal_contact.h"
+#include "testing/support/intersectors.h"
 #include "testing/support/pictures/film_of_all.h"
 
 namespace cistula {
@@ -109,7 +110,7 @@ SceneDescription boxes_of(const Row& row, Random& random) {
 template <class Real>
 std::vector<Met> met_by_line(const Row& row, const SceneDescription& scene) {
     using E = Effects<all_effects>;
-    using Brute = BruteIntersector<Real>;
+    using Brute = test::Brute<Real>;
     const auto compiled = test::compile<Real>(scene);
     const SceneView<Real> view = compiled->view();
     const Brute brute{view};

@@ -4,6 +4,7 @@
 #include "cistula/traversal/bvh.h"
 #include "scene/compile/scene_source.h"
 #include "testing/support/contacts/contact_walk.h"
+#include "testing/support/intersectors.h"
 #include "verify/cases/smooth/round_mesh.h"
 
 namespace cistula {
@@ -22,7 +23,7 @@ template <class Real>
 struct CheckedSides {
     using Media = InteriorList;
     using Scene = SceneView<Real>;
-    const BvhIntersector<Real> inner;
+    const test::Bvh<Real> inner;
     const SceneView<Real>& scene;
     const std::vector<uint32_t>& slots;  // of triangles
     SmoothCounts& counts;

@@ -9,8 +9,9 @@
 #include "apps/render_merge/options.h"
 #include "checks.h"
 #include "sequence/output_name.h"
+#include "target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(command_line) {
     using namespace cistula;
     const std::string text(reinterpret_cast<const char*>(data), std::find(data, data + size, 0) - data);
     std::vector<std::string> words;

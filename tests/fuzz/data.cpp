@@ -1,8 +1,9 @@
 // Raw pictures, .data.
 #include "checks.h"
 #include "image/picture/raw_picture.h"
+#include "target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(data) {
     using namespace cistula;
     const fuzz::MemoryFile file(data, size);
     try {

@@ -2,8 +2,9 @@
 #include "image/exr/exr.h"
 #include "checks.h"
 #include "image/exr/exr_file.h"
+#include "target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(exr) {
     using namespace cistula;
     const fuzz::MemoryFile file(data, size);
     try {

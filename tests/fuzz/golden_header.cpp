@@ -4,6 +4,7 @@
 
 #include "checks.h"
 #include "compare/suite/suite_report.h"
+#include "target.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
@@ -46,7 +47,7 @@ Attributes::mapped_type value_of(const std::string& text) {
 }  // namespace
 }  // namespace cistula
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(golden_header) {
     using namespace cistula;
     static const Rendered rendered;
     LayeredPicture golden = rendered.picture;

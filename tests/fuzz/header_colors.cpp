@@ -3,8 +3,9 @@
 
 #include "checks.h"
 #include "image/color/stated_colors.h"
+#include "target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(header_colors) {
     using namespace cistula;
     const fuzz::MemoryFile memory(data, size);
     const std::optional<FileColors> colors = stated_colors(memory.path());

@@ -4,8 +4,9 @@
 #include <stdexcept>
 
 #include "checks.h"
+#include "target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(icc_profile) {
     using namespace cistula;
     const FileColors colors = colors_of_profile({reinterpret_cast<const char*>(data), size});
     fuzz::require(colors.id.empty() != colors.profile.empty());

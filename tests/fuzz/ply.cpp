@@ -4,8 +4,9 @@
 #include "mesh_checks.h"
 #include "scene/readers/meshes/mesh_formats.h"
 #include "scene/readers/meshes/mesh_text.h"
+#include "target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(ply) {
     using namespace cistula;
     try {
         std::vector<std::string> warnings;

@@ -11,6 +11,7 @@
 #include "image/color/clamped_texels.h"
 #include "image/reader/texture_limits.h"
 #include "mesh_checks.h"
+#include "target.h"
 
 namespace {
 
@@ -68,7 +69,7 @@ void check_stored(ReaderReply& reply, const uint64_t& left) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(reader_reply) {
     answer(data, size, true, check_texture);
     answer(data, size, false, check_stored);
     return 0;

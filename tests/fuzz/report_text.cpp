@@ -1,8 +1,9 @@
 // Texts from outside, names and messages of any bytes, in the JUnit file, the JSON and the page of a suite.
 #include "checks.h"
 #include "compare/suite/suite_report.h"
+#include "target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(report_text) {
     using namespace cistula;
     using Json = nlohmann::json;
     const std::string text(reinterpret_cast<const char*>(data), size);

@@ -1,8 +1,9 @@
 // Scene files, JSON or not, to the arrays of a scene that names no other files.
 #include "scene/readers/read_scene.h"
 #include "scene_checks.h"
+#include "target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(scene_json) {
     using namespace cistula;
     try {
         fuzz::check_scene(read_scene_text(std::string(reinterpret_cast<const char*>(data), size), "a.json", ""));

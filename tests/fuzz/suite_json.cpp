@@ -3,6 +3,7 @@
 #include "compare/suite/json_edit.h"
 #include "compare/suite/suite.h"
 #include "scene/readers/json_reader.h"
+#include "target.h"
 #include "testing/support/scratch_directory.h"
 
 namespace cistula {
@@ -22,7 +23,7 @@ void check_edit(const Suite& suite) {
 }  // namespace
 }  // namespace cistula
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(suite_json) {
     using namespace cistula;
     static const ScratchDirectory folder;
     const std::string text(reinterpret_cast<const char*>(data), size);

@@ -1,8 +1,9 @@
 // The text input, in either order of its parts.
 #include "scene/readers/scene_formats.h"
 #include "scene_checks.h"
+#include "target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(text_input) {
     using namespace cistula;
     try {
         SceneDescription scene = read_text_input(std::string(reinterpret_cast<const char*>(data), size), "a.txt", "");

@@ -10,6 +10,7 @@
 #include "checks.h"
 #include "image/reader/oiio_module.h"
 #include "image/reader/texture_limits.h"
+#include "target.h"
 #include "testing/support/scratch_directory.h"
 
 extern "C" void __lsan_disable() __attribute__((weak));  // of the sanitizer, where there is one
@@ -139,7 +140,7 @@ void read(const OiioModule& oiio, const std::string& path, bool is_texture) {
 }  // namespace
 }  // namespace cistula
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(texture) {
     using namespace cistula;
     static const ScratchDirectory scratch;
     static const OiioModule& oiio = load_oiio(CISTULA_BUILD_MODULES, "tests");

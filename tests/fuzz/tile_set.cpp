@@ -3,8 +3,9 @@
 
 #include "checks.h"
 #include "sequence/merge.h"
+#include "target.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(tile_set) {
     using namespace cistula;
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     std::deque<fuzz::MemoryFile> files;

@@ -7,6 +7,7 @@
 #include "cistula/shading/surface.h"
 #include "cistula/transport/ray_tree.h"
 #include "cistula/traversal/bvh.h"
+#include "testing/support/intersectors.h"
 #include "testing/support/scene.h"
 #include "verify/scenes/generated_scene.h"
 
@@ -103,7 +104,7 @@ TYPED_TEST(BouncesTest, NoneIsLostInConvexSolids) {
                 test::add_object(mesh, test::solid_mesh(solid, dvec3(0), scale, turn), 0);
                 const auto scene = test::compile<Real>(description), triangles = test::compile<Real>(mesh);
                 const SceneView<Real> view = scene->view();
-                bounce(view, BruteIntersector<Real>{view}, targets_of(random, test::all_triangles(*triangles)),
+                bounce(view, test::Brute<Real>{view}, targets_of(random, test::all_triangles(*triangles)),
                        Vec3<Real>(random.in_cube(0.1)), 60000, Start::as_rendered, random, result);
             }
     std::printf("%s: %d bounces, %d lost, %d of %d miscounted, points at most %.1f u M outside\n",
@@ -149,8 +150,8 @@ Bounces<Real> bounce_in_meshes(int each, Start start) {
             EXPECT_EQ(view.solids[0].kind, SolidKind::mesh) << c.name;
             const dvec3 inside = (c.inside * scale - scene->center) * std::ldexp(1.0, scene->scale);
             Bounces<Real> result;
-            bounce(view, BvhIntersector<Real>{view}, targets_of(random, test::all_triangles(*scene)),
-                   Vec3<Real>(inside), each, start, random, result);
+            bounce(view, test::Bvh<Real>{view}, targets_of(random, test::all_triangles(*scene)), Vec3<Real>(inside),
+                   each, start, random, result);
             if (start == Start::as_rendered && (result.lost || result.miscounted))
                 ADD_FAILURE() << c.name << " at scale " << scale << ": " << result.lost << " lost, "
                               << result.miscounted << " miscounted of " << result.done;
@@ -182,7 +183,7 @@ TYPED_TEST(BouncesTest, LeavingOutTheFaceAloneLosesRays) {
 /// What a ray sees of a white background through a clear mesh, as a share of it.
 template <class Real>
 double seen_through(const SceneView<Real>& scene, const Ray<Real>& ray, uint32_t& flags) {
-    using Intersector = BvhIntersector<Real>;
+    using Intersector = test::Bvh<Real>;
     using Stack = BranchStack<Branch<Real>>;
     TreeSettings settings;
     settings.fixed_scale = 0x1p62;
@@ -216,7 +217,7 @@ TYPED_TEST(BouncesTest, CrossingsPassedOverCount) {
         const auto compiled = test::compile<Real>(description, true);
         const SceneView<Real> scene = compiled->view();
         const double sigma = double(scene.materials[0].absorption.x);
-        const BvhIntersector<Real> intersector{scene};
+        const test::Bvh<Real> intersector{scene};
         const auto targets = targets_of(random, test::all_triangles(*compiled));
         const Vec3<double> middle = (c.inside - compiled->center) * std::ldexp(1.0, compiled->scale);
         for (int i = 0; i < 60000; ++i) {

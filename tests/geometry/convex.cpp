@@ -5,6 +5,7 @@
 #include <quadmath.h>
 
 #include "cistula/transport/pixel.h"
+#include "testing/support/intersectors.h"
 #include "testing/support/scene.h"
 
 namespace cistula {
@@ -63,7 +64,7 @@ TYPED_TEST(ConvexTest, SolidsAreEnteredAndLeftExactlyOnce) {
                 const double radius = std::ldexp(scale, scene->scale);
                 const dvec3 center = (dvec3(3, -2, 5) * scale - scene->center) * std::ldexp(1.0, scene->scale);
                 const auto points = corners(shape, Rotation(turn), radius);
-                const BruteIntersector<Real> brute{view};
+                const test::Brute<Real> brute{view};
                 for (int i = 0; i < 24000; ++i, ++rays) {
                     const dvec3 target = center + target_on(random, shape, points);
                     dvec3 from = random.direction() * 3.5;
@@ -123,8 +124,7 @@ TYPED_TEST(ConvexTest, TheSphereAroundASolidDecidesNothing) {
                 Vec3<Real> target(place + target_on(random, shape, points));
                 if (i % 2) target += Vec3<Real>(random.in_cube(1e-6));
                 const Ray<Real> ray = test::ray_from(origin, normalized(target - origin));
-                const Hit<Real> a = BruteIntersector<Real>{view}.closest(ray),
-                                b = BruteIntersector<Real>{bare_view}.closest(ray);
+                const Hit<Real> a = test::Brute<Real>{view}.closest(ray), b = test::Brute<Real>{bare_view}.closest(ray);
                 ASSERT_TRUE(a.t == b.t && a.key == b.key) << platonic_name(solid) << " " << size << " " << i;
                 hits += a.found();
                 grazed += !a.found();
@@ -140,7 +140,7 @@ TYPED_TEST(ConvexTest, ParallelRaysAndSignedZeros) {
     test::add_solid(description, PlatonicSolid::cube);
     const auto scene = test::compile<Real>(description);
     const SceneView<Real> view = scene->view();
-    const BruteIntersector<Real> brute{view};
+    const test::Brute<Real> brute{view};
     const Real half = view.slabs[0].high;
     const Real smallest = std::numeric_limits<Real>::denorm_min(), least_normal = std::numeric_limits<Real>::min();
     for (int axis = 0; axis < 3; ++axis)
@@ -195,7 +195,7 @@ TYPED_TEST(ConvexTest, TouchingSolidsShareTheirFace) {
             test::add_solid(description, solid, center + normal * (2 * shape.inradius), 1, turn);
             const auto scene = test::compile<Real>(description);
             const SceneView<Real> view = scene->view();
-            const BruteIntersector<Real> brute{view};
+            const test::Brute<Real> brute{view};
             const double factor = std::ldexp(1.0, scene->scale);
             for (int i = 0; i < 5000; ++i) {
                 // Through the shared face well inside its edges, from either side.
@@ -251,7 +251,7 @@ TYPED_TEST(ConvexTest, FarCamerasSeeTheRightFace) {
                 dvec3 direction;
                 double start;
                 const bool meets = primary_ray(view, frame, x, y, ray, direction, start);
-                const Hit<Real> hit = meets ? BruteIntersector<Real>{view}.closest(ray) : Hit<Real>();
+                const Hit<Real> hit = meets ? test::Brute<Real>{view}.closest(ray) : Hit<Real>();
                 const Quad sx = (2 * Quad(x) / 100 - 1) * Quad(frame.camera.tan_half_width);
                 const Quad sy = (1 - 2 * Quad(y) / 100) * Quad(frame.camera.tan_half_width);
                 Quad d[3], o[3], square = 0;

@@ -6,6 +6,7 @@
 #include "backend_embree/embree/embree_tree.h"
 #include "cistula/shading/snell.h"
 #include "cistula/shading/surface.h"
+#include "testing/support/intersectors.h"
 #include "testing/support/scene.h"
 #include "verify/scenes/generated_scene.h"
 
@@ -116,7 +117,7 @@ template <class Real>
 Record<Real> record(const CompiledScene<Real>& compiled, const SceneView<Real>& scene, int paths) {
     Record<Real> result;
     Random random(99);
-    const BruteIntersector<Real> brute{scene};
+    const test::Brute<Real> brute{scene};
     const auto triangles = test::all_triangles(compiled);
     for (int i = 0; i < paths; ++i) {
         const double far = i % 5 ? 1.9 : 0.9;
@@ -213,12 +214,12 @@ TYPED_TEST(IntersectorsTest, AllFindTheSameBits) {
         for (const auto& [ray, hit] : expected.closest) hits += hit.found();
         for (const auto& s : expected.shadows)
             partly_lit += s.all != Vec3<Real>(Real(0)) && s.all != Vec3<Real>(Real(1));
-        expect_same(expected, BvhIntersector<Real>{scene}, std::string(c.name) + ", bvh");
+        expect_same(expected, test::Bvh<Real>{scene}, std::string(c.name) + ", bvh");
         const auto quick = test::compile<Real>(c.scene, true, 0);
         const SceneView<Real> quick_scene = quick->view();
         // The lights that shadow rays name are the first view's; both scenes are the same but for the tree.
         ASSERT_EQ(compiled->hashes.of(0), quick->hashes.of(0));
-        expect_same(expected, BvhIntersector<Real>{quick_scene}, std::string(c.name) + ", quick bvh");
+        expect_same(expected, test::Bvh<Real>{quick_scene}, std::string(c.name) + ", quick bvh");
         for (const EmbreeOptions& options : embree_options()) {
             const EmbreeTree<Real> tree(scene, options);
             expect_same(
@@ -246,7 +247,7 @@ TYPED_TEST(IntersectorsTest, TheOrderOfPrimitivesChangesNothing) {
         for (size_t i = shuffled.convex.size(); i > 1; --i)
             std::swap(shuffled.convex[i - 1], shuffled.convex[random.below(uint32_t(i))]);
         const SceneView<Real> other = shuffled.view();
-        const BruteIntersector<Real> brute{other};
+        const test::Brute<Real> brute{other};
         for (const auto& [ray, hit] : expected.closest) {
             Hit<Real> found = brute.closest(ray);
             found.slot = hit.slot;
@@ -275,10 +276,10 @@ TYPED_TEST(IntersectorsTest, RaysThatAreNotFiniteMeetNothing) {
             (k < 3 ? ray.origin[k] : ray.direction[k - 3]) = bad;
             const ShadowRay<Real> shadow{ray, Real(1), &scene.lights[0]};
             EXPECT_FALSE(embree.closest(ray).found());
-            EXPECT_FALSE(BvhIntersector<Real>{scene}.closest(ray).found());
-            EXPECT_FALSE(BruteIntersector<Real>{scene}.closest(ray).found());
+            EXPECT_FALSE(test::Bvh<Real>{scene}.closest(ray).found());
+            EXPECT_FALSE(test::Brute<Real>{scene}.closest(ray).found());
             EXPECT_EQ(embree.template transmittance<AllEffects>(shadow), Vec3<Real>(Real(0)));
-            EXPECT_EQ(BvhIntersector<Real>{scene}.template transmittance<AllEffects>(shadow), Vec3<Real>(Real(0)));
+            EXPECT_EQ(test::Bvh<Real>{scene}.template transmittance<AllEffects>(shadow), Vec3<Real>(Real(0)));
         }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "testing/support/intersectors.h"
 #include "testing/support/scene.h"
 
 namespace cistula {
@@ -82,7 +83,7 @@ TYPED_TEST(TriangleTest, ClosedSolidsAreEnteredAndLeftExactlyOnce) {
                 // Where the compiled mesh stands in its frame.
                 const double radius = std::ldexp(scale, scene->scale);
                 const dvec3 center = (dvec3(3, -2, 5) * scale - scene->center) * std::ldexp(1.0, scene->scale);
-                const BruteIntersector<Real> brute{view};
+                const test::Brute<Real> brute{view};
                 for (int i = 0; i < 36000; ++i) {
                     const Aimed<Real> a = aim(random, triangles);
                     const Ray<Real> ray = test::ray_from(a.origin, a.direction);
@@ -143,7 +144,7 @@ TYPED_TEST(TriangleTest, FansHoldAtHubAndSpokes) {
             Vec3<Real> origin = Vec3<Real>(random.direction() * 2.5);
             const double across = std::abs(double(normalized(target - origin).z));
             if (i % 16 < 2) origin = target, origin.z = i % 16 ? Real(2) : Real(-2);
-            const Count count = test::cross_all(BruteIntersector<Real>{view}, test::ray_from(origin, target - origin));
+            const Count count = test::cross_all(test::Brute<Real>{view}, test::ray_from(origin, target - origin));
             ASSERT_EQ(count.enters, count.leaves) << n << " " << i;
             if (across > 0.5 || i % 16 < 2) {
                 ASSERT_EQ(count.enters, 1) << n << " " << i;
@@ -170,7 +171,7 @@ TYPED_TEST(TriangleTest, TinyShearsKeepTheirSigns) {
                                  SolidKind::mesh);
         const SceneView<Real> view = scene.view();
         const Count count =
-            test::cross_all(BruteIntersector<Real>{view},
+            test::cross_all(test::Brute<Real>{view},
                             test::ray_from(Vec3<Real>(tiny(), tiny(), Real(3)), Vec3<Real>(tiny(), tiny(), Real(-1))));
         ASSERT_EQ(count.enters, 1) << i;
         ASSERT_EQ(count.leaves, 1) << i;
@@ -210,7 +211,7 @@ TYPED_TEST(TriangleTest, RaysInThePlaneOfAFacePassItBy) {
     const Vec3<Real> a(Real(0), Real(0), Real(0.5)), b(Real(1), Real(0), Real(0.5)), c(Real(0), Real(1), Real(0.5));
     test::add_clusters<Real>(scene, {{a, b, c}}, SolidKind::sheet);
     const SceneView<Real> view = scene.view();
-    const BruteIntersector<Real> brute{view};
+    const test::Brute<Real> brute{view};
     Random random(5);
     for (int i = 0; i < 10000; ++i) {
         const Vec3<Real> origin(Real(random.between(-2, 2)), Real(random.between(-2, 2)), Real(0.5));
@@ -231,7 +232,7 @@ TYPED_TEST(TriangleTest, RaysInThePlaneOfAFacePassItBy) {
         origin[(axis + 2) % 3] = -3;
         direction[other] = i % 3 == 1 ? Real(random.between(-0.3, 0.3)) : Real(0);
         direction[(axis + 2) % 3] = 1;
-        const Count count = test::cross_all(BruteIntersector<Real>{cube_view}, test::ray_from(origin, direction));
+        const Count count = test::cross_all(test::Brute<Real>{cube_view}, test::ray_from(origin, direction));
         ASSERT_EQ(count.enters, count.leaves);
         ASSERT_LE(count.enters, 1);
     }
@@ -254,7 +255,7 @@ TYPED_TEST(TriangleTest, DegenerateAndNotFiniteTrianglesAreNeverHit) {
                               {v(-inf, -inf, 0), v(inf, -inf, 0), v(0, inf, 0)}},
                              SolidKind::sheet);
     const SceneView<Real> view = scene.view();
-    const BruteIntersector<Real> brute{view};
+    const test::Brute<Real> brute{view};
     Random random(6);
     for (int i = 0; i < 100000; ++i) {
         const Vec3<Real> origin(Vec3<Real>(random.direction() * 2.0));
@@ -267,7 +268,7 @@ TYPED_TEST(TriangleTest, DegenerateAndNotFiniteTrianglesAreNeverHit) {
     CompiledScene<Real> sound;
     test::add_clusters<Real>(sound, {{a, b, c}}, SolidKind::sheet);
     const SceneView<Real> sound_view = sound.view();
-    const BruteIntersector<Real> through{sound_view};
+    const test::Brute<Real> through{sound_view};
     const Vec3<Real> origin(Real(0), Real(0), Real(1)), down(Real(0), Real(0), Real(-1));
     EXPECT_TRUE(through.closest(test::ray_from(origin, down)).found());
     for (int k = 0; k < 3; ++k)
@@ -295,14 +296,14 @@ TYPED_TEST(TriangleTest, TheSignOfDetTellsTheSide) {
             const Vec3<Real> direction = permuted({Real(0), Real(0), -side});
             Ray<Real> ray = test::ray_from(origin, direction);
             if (side > 0) ray.media.add(0, 1);  // first crossings come from the side that the list states
-            const Hit<Real> refused = BruteIntersector<Real>{view}.closest(ray);
+            const Hit<Real> refused = test::Brute<Real>{view}.closest(ray);
             EXPECT_FALSE(refused.found());
             EXPECT_EQ(refused.wrong_side_t, Real(2));
             ray.accept_both_sides();
-            EXPECT_EQ(BruteIntersector<Real>{view}.closest(ray).t, Real(2));
+            EXPECT_EQ(test::Brute<Real>{view}.closest(ray).t, Real(2));
             ray = test::ray_from(origin, direction);
             if (side < 0) ray.media.add(0, 1);
-            const Hit<Real> hit = BruteIntersector<Real>{view}.closest(ray);
+            const Hit<Real> hit = test::Brute<Real>{view}.closest(ray);
             ASSERT_TRUE(hit.found());
             EXPECT_EQ(hit.enters, side > 0);
             EXPECT_EQ(key_kind(hit.key), side > 0 ? CrossingKind::enter : CrossingKind::leave);
@@ -370,7 +371,7 @@ TYPED_TEST(TriangleTest, BothDirectionsAgree) {
     test::add_object(description, test::solid_mesh(PlatonicSolid::icosahedron, dvec3(0), 1, dvec3(10, 20, 30)), 0);
     const auto scene = test::compile<Real>(description);
     const SceneView<Real> view = scene->view();
-    const BruteIntersector<Real> brute{view};
+    const test::Brute<Real> brute{view};
     const auto triangles = test::all_triangles(*scene);
     Random random(8);
     int compared = 0;

@@ -57,8 +57,8 @@ struct Effects {
     static constexpr bool triangles = has(effect_triangles) || !has(effect_solids | effect_spheres);
 };
 
-/// The effects of a mask without what only a tree of rays keeps. What the tree calls is compiled for these, once for all
-/// masks that differ in a budget or layers.
+/// The effects of a mask without what only a tree of rays keeps. What the tree calls is compiled for these, once for
+/// all masks that differ in a budget or layers.
 template <class E>
 using OnlyEffects = Effects<E::mask & all_effects>;
 

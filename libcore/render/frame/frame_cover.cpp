@@ -37,7 +37,8 @@ bool margins_suffice(const FrameView& frame, double extent) {
 /// the view.
 constexpr double share_of_growth = 0x1p-12;
 
-double cross(double ax, double ay, double bx, double by) {
+/// Positive where the way from one step to the next turns to the left.
+double turn(double ax, double ay, double bx, double by) {
     return ax * by - ay * bx;
 }
 
@@ -50,7 +51,7 @@ std::vector<Point> convex_outline(std::vector<Point>& points) {
     const auto add = [&](const Point& p, size_t fewest) {
         while (outline.size() >= fewest + 2) {
             const Point &b = outline.back(), &a = outline[outline.size() - 2];
-            if (cross(b.x - a.x, b.y - a.y, p.x - b.x, p.y - b.y) > 0) break;
+            if (turn(b.x - a.x, b.y - a.y, p.x - b.x, p.y - b.y) > 0) break;
             outline.pop_back();
         }
         outline.push_back(p);

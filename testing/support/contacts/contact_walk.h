@@ -7,6 +7,7 @@
 
 #include "cistula/transport/ray_tree.h"
 #include "testing/support/contacts/ideal_contact.h"
+#include "testing/support/intersectors.h"
 
 namespace cistula::test {
 
@@ -81,7 +82,7 @@ ContactCounts walk(const ContactScene& contact, Random& random, int rays) {
     ContactCounts counts;
     const auto compiled = compile_scene<Real>(contact.scene);
     const SceneView<Real> view = compiled->view();
-    using Brute = BruteIntersector<Real>;
+    using Brute = test::Brute<Real>;
     const Brute brute{view};
     using Checked = CheckedIntersector<Real, Brute>;
     Checked checked(*compiled, contact.bodies, brute, counts);

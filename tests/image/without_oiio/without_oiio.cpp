@@ -12,13 +12,14 @@
 namespace cistula {
 namespace {
 
+/// What is said of the module that is not beside the program that reads pictures.
+const std::string lack = " need the module libcistula_oiio.so, which is not in " CISTULA_MODULE_FOLDER
+                         "; builds with OpenImageIO have it: `make build` installs and uses that";
+
 TEST(WithoutOpenImageIO, OtherFormatsAreAClearError) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("x.png");
-    const std::string message = path +
-                                ": cannot read: this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF), which "
-                                "formats other than EXR and .data need; "
-                                "`make build` installs it (Debian: libopenimageio-dev) and builds with it";
+    const std::string message = path + ": cannot read: formats other than EXR and .data" + lack;
     put_bytes(path, "anything");
     EXPECT_ERROR(read_texture(path), ExitCode::file, message);
     EXPECT_EQ(bytes_of(path), "anything");
@@ -28,10 +29,7 @@ TEST(WithoutOpenImageIO, PicturesToCompareAreEXRs) {
     const ScratchDirectory scratch;
     const std::string path = scratch.file("x.png");
     write_preview(path, ColorPicture{1, 1, {{1, 0, 1}}});
-    EXPECT_ERROR(StoredReader().read(path), ExitCode::file,
-                 path +
-                     ": cannot read: this build has no OpenImageIO (CISTULA_WITH_OIIO=OFF), which formats other than "
-                     "EXR need; `make build` installs it (Debian: libopenimageio-dev) and builds with it");
+    EXPECT_ERROR(StoredReader().read(path), ExitCode::file, path + ": cannot read: formats other than EXR" + lack);
     LayeredPicture layers;
     layers.width = layers.height = layers.display_width = layers.display_height = 1;
     layers.channels = {{"Y", true, {0.5f}}};
