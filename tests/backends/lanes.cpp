@@ -375,7 +375,7 @@ TYPED_TEST(LaneTest, CutoffsAndTargetsOfMeshesAreEqual) {
 TYPED_TEST(LaneTest, TreesWithoutEndAreEqual) {
     const SceneDescription scene = test::room_of_mirrors();
     FrameSettings settings = test::endless_settings(3, 2);
-    settings.target_error = 0.05;
+    settings.target_error = 0.02;  // some trees come near most_branches; with 0.05 none does
     this->compare(scene, settings, "mirrors");
     settings.layers = test::all_layers();
     this->compare(scene, settings, "mirrors with layers");
