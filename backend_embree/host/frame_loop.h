@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 
@@ -203,8 +204,7 @@ class FrameTask {
     }
 
     /// Calls render(pixel, work) for each pixel of the film where the scene may be visible, in tiles.
-    template <class Render>
-    bool for_each_pixel(const Render& render) {
+    bool for_each_pixel(const std::function<void(const TilePixel&, PixelWork&)>& render) {
         return for_each_tile([&](Tile& tile) {
             for_each_covered(tile, [&](const TilePixel& pixel) {
                 if (stopped()) return;
@@ -227,8 +227,7 @@ class FrameTask {
     };
 
     /// Calls render(tile) for each tile of the film, and puts its records into the film; false if it was stopped.
-    template <class Render>
-    bool for_each_tile(const Render& render) {
+    bool for_each_tile(const std::function<void(Tile&)>& render) {
         const PixelRect rect = film_.rect;
         const int tile = settings_.tile;
         const int columns = (rect.width + tile - 1) / tile;
@@ -260,8 +259,7 @@ class FrameTask {
 
     /// Calls render(pixel) for each pixel of a tile where the scene may be visible, and fills the others. The pixel's
     /// record stays where it is until the tile is put into the film.
-    template <class Render>
-    void for_each_covered(Tile& tile, const Render& render) {
+    void for_each_covered(Tile& tile, const std::function<void(const TilePixel&)>& render) {
         const PixelWriter writer(film_.pixels.planes());
         const PixelRect& rect = tile.rect;
         for (int y = rect.y; y < rect.y + rect.height; ++y)

@@ -28,6 +28,13 @@ struct EitherIntersector {
     }
 };
 
+}  // namespace
+
+template <class Real>
+inline constexpr bool fills_film_layers<EitherIntersector<Real>> = true;
+
+namespace {
+
 /// A Renderer over an intersector that needs only a view of the scene.
 template <class Real>
 class HostRenderer : public Renderer {

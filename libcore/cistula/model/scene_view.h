@@ -63,6 +63,9 @@ struct alignas(16) Disk {
     uint32_t plane;  // among shared_planes
     uint32_t solid;
     uint32_t face;  // a number like those of triangles, of which it has one: triangle_planes[face] is `plane`
+
+    /// Whether it is a plane without end.
+    CISTULA_INLINE bool is_endless() const { return least_slope < Real(1); }
 };
 
 /// The |n.d| of a plane without end below which lines that are rounded once more may not tell on which side they go.

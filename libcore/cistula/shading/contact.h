@@ -132,7 +132,7 @@ class ContactStart {
             const Disk<Real>& disk = scene_.disks[solid_.first_slab];
             const Real slope = dot(scene_.shared_planes[disk.plane].normal, plane.normal);
             Real reach = square_root(disk.square * max_or_second(Real(1) - slope * slope, Real(0)));
-            if (disk.least_slope < Real(1)) {
+            if (disk.is_endless()) {
                 const Vec3<Real> line = cross(scene_.shared_planes[disk.plane].normal, plane.normal);
                 reach = dot(line, line) > horizon<Real> * horizon<Real> ? RealTraits<Real>::infinity : Real(0);
             }

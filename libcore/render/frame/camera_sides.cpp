@@ -103,7 +103,7 @@ class FacesAtCamera {
         Box box;
         box.add(camera_);
         if (magnitude(plane.distance(camera_)) <= range(plane, box, in_double * rounding, disk.solid) &&
-            (disk.least_slope < Real(1) || dot(off, off) <= double(disk.square)))
+            (disk.is_endless() || dot(off, off) <= double(disk.square)))
             add({plane.normal, plane.offset, apart * max_or_second(unit_, with_slack(rounding, disk.plane))});
     }
 
