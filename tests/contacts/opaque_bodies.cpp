@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "cistula/transport/layered_sums.h"
 #include "cistula/transport/next_surface.h"
 #include "render/frame/frame_view.h"
 #include "testing/support/contacts/ideal_contact.h"

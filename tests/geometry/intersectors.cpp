@@ -6,6 +6,7 @@
 #include "backend_embree/embree/embree_tree.h"
 #include "cistula/shading/snell.h"
 #include "cistula/shading/surface.h"
+#include "cistula/transport/ray_tree.h"
 #include "testing/support/intersectors.h"
 #include "testing/support/scene.h"
 #include "verify/scenes/generated_scene.h"

@@ -9,6 +9,7 @@
 #include "cistula/shading/surface.h"
 #include "cistula/traversal/brute.h"
 #include "testing/support/scene.h"
+#include "verify/scenes/generated_scene.h"
 
 namespace cistula {
 namespace {

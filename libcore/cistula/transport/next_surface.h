@@ -2,6 +2,8 @@
 #pragma once
 
 #include "cistula/lights/visible_light.h"
+#include "cistula/model/layers.h"
+#include "cistula/model/pixel_record.h"
 #include "cistula/model/sky.h"
 #include "cistula/shading/absorption.h"
 #include "cistula/shading/interface.h"
