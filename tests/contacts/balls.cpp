@@ -438,8 +438,13 @@ class CheckedBalls {
     BallCounts& counts_;
 };
 
+/// A vector of this length, which is drawn before its direction: compilers differ in the order of two draws in one
+/// term.
+dvec3 in_any_direction(Random& r, double length) {
+    return length * r.direction();
+}
 dvec3 near(Random& r, double low, double high) {
-    return std::pow(10, r.between(low, high)) * r.direction();
+    return in_any_direction(r, std::pow(10, r.between(low, high)));
 }
 
 /// Traces trees of lines that are aimed at contacts, at outlines, and anywhere.
@@ -448,15 +453,15 @@ void walk_balls(const BallScene& ideal, const SceneView<Real>& view, Random& ran
     const Inner inner{view};
     const CheckedBalls<Real, Inner> checked(ideal, inner, counts);
     const double fine = sizeof(Real) == sizeof(float) ? -9 : -17;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 100; ++i) {
         const Ball<Real>& ball = view.balls[random.below(view.balls.size)];
         const dvec3 center(Vec3<double>(ball.center));
         const auto radius = double(ball.radius);
         Ray<Real> ray;
         const dvec3 o = !ideal.around.empty()  ? ideal.around[0] + ideal.size * near(random, 0.1, 2)
-                        : random.below(3) == 0 ? center + radius * random.unit() * random.direction()
-                                               : random.between(0.2, 1.5) * random.direction();
-        ray.origin = Vec3<Real>(ideal.afar ? std::pow(10, random.between(0.5, 3)) * random.direction() : o);
+                        : random.below(3) == 0 ? center + in_any_direction(random, radius * random.unit())
+                                               : in_any_direction(random, random.between(0.2, 1.5));
+        ray.origin = Vec3<Real>(ideal.afar ? in_any_direction(random, std::pow(10, random.between(0.5, 3))) : o);
         const dvec3 from(Vec3<double>(ray.origin));
         bool is_clear = true;
         for (uint32_t s = 0; s < view.solids.size; ++s) {
@@ -471,12 +476,14 @@ void walk_balls(const BallScene& ideal, const SceneView<Real>& view, Random& ran
         if (ideal.opaque) is_clear &= length(from) < 0.7 && checked.off_plane(ideal.quads[0], ExactPoint(from)) > 0;
         if (!is_clear) continue;
         const uint32_t choice = random.below(10);
-        dvec3 target = center + radius * 1.2 * random.unit() * random.direction();
-        if (!ideal.aims.empty() && choice < 5)
-            target = ideal.aims[random.below(uint32_t(ideal.aims.size()))] + radius * near(random, fine, -1);
-        else if (choice < 8)
-            target = center + normalized(cross(random.direction(), center - from)) * radius +
-                     radius * near(random, fine, -1);
+        dvec3 target = center + in_any_direction(random, radius * 1.2 * random.unit());
+        if (!ideal.aims.empty() && choice < 5) {
+            target = ideal.aims[random.below(uint32_t(ideal.aims.size()))];
+            target += radius * near(random, fine, -1);
+        } else if (choice < 8) {
+            target = center + normalized(cross(random.direction(), center - from)) * radius;
+            target += radius * near(random, fine, -1);
+        }
         ray.direction = Vec3<Real>(normalized(target - from));
         if (ideal.afar) start_near<Effects<all_effects>>(view, ray);
         EXPECT_EQ(trace_tree(view, checked, ray, 6), 0u);

@@ -113,7 +113,7 @@ TEST(ScenePlanes, ChangeAsAWhole) {
                         "/plane/keys/0/1: expected a plane [nx, ny, nz, d], found an array of 3");
     EXPECT_WRONG_OBJECT(R"({"plane": {"keys": [[0, [0, 0, 1, 1e31]]]}, "material": "glass"})",
                         "/plane/keys/0/1/3: expected a number from -1e30 to 1e30, found 1e31");
-    EXPECT_WRONG(read_objects(R"({"plane": {"keys": [[0, [0, 0, 0, 1]]]}, "material": "glass"})"),
+    EXPECT_ERROR(read_objects(R"({"plane": {"keys": [[0, [0, 0, 0, 1]]]}, "material": "glass"})"), ExitCode::usage,
                  "frame 0: a.json: /objects/0/plane: the normal is 0; give the direction across the plane");
 }
 

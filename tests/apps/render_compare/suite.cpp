@@ -1,4 +1,5 @@
 // `render-compare suite` from outside: what holds, what does not and how that is said, what --update changes, files.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 

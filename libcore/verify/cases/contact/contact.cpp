@@ -169,7 +169,8 @@ Render apart(const Arrangements& arrangements, Shape shape) {
                     site.scene.cutoff = 1e-4;
                     const int one = add_material(site.scene, glass(1.5, true, {0.1, 0.3, 0.6}));
                     const int other = add_material(site.scene, glass(1.33, true, {0.7, 0.2, 0.1}));
-                    return arranged(site, arrangement, {one, other, add_material(site.scene, wood()), shape}).scene;
+                    const int floor = add_material(site.scene, wood());
+                    return arranged(site, arrangement, {one, other, floor, shape}).scene;
                 };
                 expect_same_picture(stage, tally, of_size(1), of_size(1 + hair), number++);
             }
@@ -375,7 +376,8 @@ Render straight(const Arrangements& arrangements, const MaterialDescription& one
                     Site site(ground);
                     const int first = add_material(site.scene, one);
                     const int second = add_material(site.scene, other);
-                    site = arranged(site, arrangement, {first, second, add_material(site.scene, wood())});
+                    const int floor = add_material(site.scene, wood());
+                    site = arranged(site, arrangement, {first, second, floor});
                     light_from_all_sides(site, arrangement.corner);
                     if (near) site.scene.camera.field_of_view = 8;
                     measure_straight(tally, site, stage.film(site.scene), place_of_scene(number++));
