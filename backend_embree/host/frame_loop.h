@@ -204,7 +204,8 @@ class FrameTask {
     }
 
     /// Calls render(pixel, work) for each pixel of the film where the scene may be visible, in tiles.
-    bool for_each_pixel(const std::function<void(const TilePixel&, PixelWork&)>& render) {
+    template <class Render>
+    bool for_each_pixel(const Render& render) {
         return for_each_tile([&](Tile& tile) {
             for_each_covered(tile, [&](const TilePixel& pixel) {
                 if (stopped()) return;
@@ -259,7 +260,8 @@ class FrameTask {
 
     /// Calls render(pixel) for each pixel of a tile where the scene may be visible, and fills the others. The pixel's
     /// record stays where it is until the tile is put into the film.
-    void for_each_covered(Tile& tile, const std::function<void(const TilePixel&)>& render) {
+    template <class Render>
+    void for_each_covered(Tile& tile, const Render& render) {
         const PixelWriter writer(film_.pixels.planes());
         const PixelRect& rect = tile.rect;
         for (int y = rect.y; y < rect.y + rect.height; ++y)

@@ -82,9 +82,8 @@ ContactCounts walk(const ContactScene& contact, Random& random, int rays) {
     ContactCounts counts;
     const auto compiled = compile_scene<Real>(contact.scene);
     const SceneView<Real> view = compiled->view();
-    using Brute = test::Brute<Real>;
-    const Brute brute{view};
-    using Checked = CheckedIntersector<Real, Brute>;
+    const Brute<Real> brute{view};
+    using Checked = CheckedIntersector<Real, Brute<Real>>;
     Checked checked(*compiled, contact.bodies, brute, counts);
     checked.target = [&] { return target_in(contact, random); };
     const double factor = std::ldexp(1.0, compiled->scale);
